@@ -26,6 +26,14 @@ static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
     (Browser::ready().unwrap(), web::served(extras).unwrap())
 });
 
+/// The firmware's face code as a module, in a folder of its own.
+static FACE_MODULE: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let module = folder.path().join("face.wasm");
+    std::fs::write(&module, web::face_module().unwrap()).unwrap();
+    (folder, module)
+});
+
 /// Captured figures of different makers.
 const CAPTURED: [&str; 5] = [
     "bvh_bandai1_dance.bvh",
@@ -144,8 +152,9 @@ fn the_modules_stand_whatever_bytes_they_get() {
     if skipped("the player's modules") {
         return;
     }
-    let modules = [web::CHARACTER[0], web::FACE[0], web::CHARACTER[0]].map(|name| paths::root().join("target/web").join(name));
-    assert!(!STAGE.1.is_empty(), "they were built");
+    let character = paths::root().join("target/web").join(web::CHARACTER[0]);
+    assert!(!STAGE.1.is_empty(), "it was built");
+    let modules = [&character, &*FACE_MODULE.1, &character];
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/module.mjs")).args(modules).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
     let output = node.output().unwrap();
@@ -176,6 +185,59 @@ fn the_element_draws_the_strokes_of_the_firmware() {
     clips.sort();
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/lines.mjs")).arg(paths::root().join("target/web").join(web::CHARACTER[0]));
+    let output = node.args(clips).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// Our faces, every unit of the face by itself and by the names of Live Link Face, and a captured one.
+#[test]
+fn the_element_draws_the_lines_of_the_firmwares_face() {
+    if skipped("the element's face") {
+        return;
+    }
+    assert!(!STAGE.1.is_empty(), "the script was built");
+    let folder = tempfile::tempdir().unwrap();
+    let mut sources: Vec<PathBuf> = std::fs::read_dir(own("face")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let names: Vec<&str> = pantin_face::NAMES.lines().collect();
+    for (number, names) in names.chunks(20).enumerate() {
+        let rows = (0..2 * names.len()).map(|row| {
+            let value = |index: usize| {
+                if row / 2 != index {
+                    "0"
+                } else if row % 2 == 0 {
+                    "0.8"
+                } else {
+                    "-0.6"
+                }
+            };
+            (0..names.len()).map(value).collect::<Vec<_>>().join(",")
+        });
+        let table = folder.path().join(format!("units-{number}.csv"));
+        std::fs::write(&table, format!("{}\n{}\n", names.join(","), rows.collect::<Vec<_>>().join("\n"))).unwrap();
+        sources.push(table);
+    }
+    sources.extend(paths::data().map(|data| data.join("face_neurosync_angry_arkit.csv")).filter(|path| path.is_file()));
+    sources.sort();
+    let mut clips = vec![own("greet.ptn"), own("walk.ptn")];
+    for source in sources {
+        if source.extension().is_some_and(|end| end == "ptn") {
+            clips.push(source);
+            continue;
+        }
+        let clip = folder.path().join(source.file_stem().unwrap()).with_extension("ptn");
+        let mut tool = Command::new(build::host_tool().unwrap());
+        tool.arg("convert").arg(&source).arg("-o").arg(&clip).args(["--effort", "fast", "--quiet"]);
+        if source.extension().is_some_and(|end| end == "csv") {
+            tool.args(["--fps", "30"]);
+        }
+        assert!(tool.status().unwrap().success(), "{}", source.display());
+        clips.push(clip);
+    }
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/faces.mjs"))
+        .arg(&FACE_MODULE.1)
+        .arg(paths::root().join("target/web").join(web::FACE[0]));
     let output = node.args(clips).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));

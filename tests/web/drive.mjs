@@ -464,7 +464,7 @@ const cases = {
       await route.continue({ url: `${args.site}clips/walk.ptn` });
     });
     let fails = true;
-    await plain.route("**/pantin-face.wasm", (route) => ((fails = !fails), fails ? route.continue() : route.fulfill({ status: 503 })));
+    await plain.route("**/pantin-character.wasm", (route) => ((fails = !fails), fails ? route.continue() : route.fulfill({ status: 503 })));
     await plain.goto(`${args.site}plain.html`);
 
     // Properties from before the definition count; a second copy is no error; the canvas keeps its size.
@@ -522,9 +522,9 @@ const cases = {
       await until(() => one.playable > 40, "it loads again what its removal stopped");
       one.removeAttribute("src");
       same([one.frames, one.received, one.src], [0, 0, null]);
-      // A face's module fails once.
-      same(await outcome(one.load("clips/greet.ptn")), "Error");
-      same(await outcome(one.load("clips/greet.ptn")), "");
+      // A character's module fails once.
+      same(await outcome(one.load("clips/character.ptb")), "Error");
+      same(await outcome(one.load("clips/character.ptb")), "");
       same(await outcome(one.load("http://[")), "TypeError");
       const never = document.createElement("pantin-player");
       never.currentTime = 0.5;
@@ -576,14 +576,14 @@ const cases = {
       return (await session.send("Runtime.getHeapUsage")).usedSize;
     };
     const before = await heap();
-    assert.equal(await crowd(), 1, "the face's module is the only one");
+    assert.equal(await crowd(), 1, "the character's module is the only one");
     const after = await heap();
     assert.equal(await crowd(), 1);
     // Of 300 players, each of which has more than 4 KB, none is left.
     const again = await heap();
     assert.ok(again - after < 300 * 4096, `${[before, after, again]}`);
 
-    // A policy that allows no WebAssembly, for all that bodies do.
+    // A policy that allows no WebAssembly, for all that clips do.
     await plain.route("**/strict.html", (route) => route.fulfill({ body, contentType: "text/html", headers: { "Content-Security-Policy": policy.replace(" 'wasm-unsafe-eval'", "").replace("default-src", "img-src data:; default-src") } }));
     await plain.goto(`${args.site}strict.html`);
     await plain.evaluate(async () => {
@@ -593,6 +593,10 @@ const cases = {
       one.look = "oled";
       await one.picture();
       if (window.seen(one).colours < 4) throw new Error("nothing is drawn");
+      one.look = "solid";
+      await one.picture();
+      if (window.seen(one).colours < 20) throw new Error("nothing is drawn");
+      await one.load("clips/greet.ptn");
       await one.load("clips/character.ptb#walk");
       same([one.playable === one.frames, one.readyState, window.memories.length], [true, 4, 0]);
       one.remove();

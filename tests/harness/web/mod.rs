@@ -9,8 +9,8 @@ use anyhow::{Context, Result};
 use pantin_tools::serve::{Site, Times, serve};
 
 pub use xtask::browser;
-pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, sizes};
-pub use xtask_web::tools;
+pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, face_module, sizes};
+pub use xtask_web::{bundle, tools};
 
 use crate::paths;
 

@@ -14,7 +14,7 @@ const { chromium } = createRequire(`${process.env.PLAYWRIGHT}/`)("playwright-cor
 const CLIPS = process.argv[2];
 // A clip of each module: of a body, of a face beside it, and a character.
 const [BODY, FACE, CHARACTER] = ["walk.ptn", "greet.ptn", "character.ptb"];
-const MODULES = ["pantin-face.wasm", "pantin-character.wasm"];
+const MODULES = ["pantin-character.wasm"];
 const player = resolve("node_modules/@pantin/player");
 // All of it is served below this folder.
 const site = resolve("site");

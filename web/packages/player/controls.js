@@ -14,7 +14,7 @@ function actOf(player, { key, shiftKey }, home) {
     Home: () => player.seek(0),
     End: () => player.seek(player.playable - 1),
     r: () => (player.backwards = !player.backwards),
-    l: () => (player.look = player.look === "oled" ? "lines" : "oled"),
+    l: () => (player.look = { lines: "solid", solid: "oled", oled: "lines" }[player.look]),
     f: () => (document.fullscreenElement ? document.exitFullscreen() : player.requestFullscreen()),
     "+": () => (player.playbackRate = Math.min(8, player.playbackRate * 2)),
     "-": () => (player.playbackRate = Math.max(1 / 8, player.playbackRate / 2)),
@@ -42,7 +42,9 @@ export function attach(player, home) {
   stage.addEventListener("pointerdown", (event) => {
     from = place(event);
     stage.setPointerCapture(event.pointerId);
+    stage.style.cursor = "grabbing";
   });
+  stage.addEventListener("lostpointercapture", () => (stage.style.cursor = ""));
   stage.addEventListener("pointermove", (event) => {
     if (!(event.buttons & 1)) return;
     const [[x, y], [oldX, oldY]] = [place(event), from ?? place(event)];

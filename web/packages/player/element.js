@@ -1,21 +1,21 @@
 // <pantin-player src="walk.ptn" autoplay loop></pantin-player>: plays a clip while its bytes arrive, as a media element does. docs/WEB.md lists its attributes,
 // properties, methods and events. The build puts decoder and figure into one file with it; other parts are modules, fetched at their first use.
 import { openRawClip, openRawRig } from "@pantin/decoder/clip.js";
-import { figureOf, visitor } from "./figure.js";
+import { figureOf, maths, visitor } from "./figure.js";
 
-const MOST = 64 << 20;
+// Bytes of a file that is not shown before all of it has arrived.
+const PACKET = 1200;
 // What a player without a clip knows.
-const empty = () => ({ received: 0, total: 0, trouble: "", error: null, events: [], clips: [], states: [], inputs: [], parameters: [], state: null });
+const empty = () => ({ received: 0, total: 0, trouble: "", coming: "", error: null, events: [], clips: [], states: [], inputs: [], parameters: [], state: null });
 // What is said, which a module has in other languages. What is wrong with a file the decoder says.
 const ENGLISH = {
-  figure: "animated figure", play: "Play", pause: "Pause", time: "Time", of: "of", seconds: "seconds", bytes: "bytes", frames: "frames", first: "the first pose is still to come",
+  figure: "animated figure", play: "Play", pause: "Pause", time: "Time", of: "of", seconds: "seconds", frames: "frames",
 };
 const HOME = { orbit: -50, tilt: 12 };
 // What is behind the figure where the ground is transparent, on a light page and a dark one.
 const PAPERS = [[250, 250, 247], [19, 22, 27]];
 const AXES = ["x", "y", "z"];
 const SIDES = { left: -1, right: 1 };
-const [WIDTH, HEIGHT] = [128, 64];
 const isStill = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const CSS = `
@@ -25,7 +25,6 @@ const CSS = `
 .stage { --p: #fafaf7; --m: #262c34; --l: #c65c08; --r: #0068a8; --g: #69767e; }
 .dark { --p: #13161b; --m: #fff0d7; --l: #ffa64d; --r: #60c4ff; --g: #aabec3; }
 .stage { position: absolute; inset: 0; border-radius: 10px; overflow: hidden; touch-action: pan-y; cursor: grab; outline-offset: 3px; background: var(--pantin-paper, var(--p)); color: var(--pantin-body, var(--m)); fill: var(--pantin-left, var(--l)); stroke: var(--pantin-right, var(--r)); stop-color: var(--pantin-ground, var(--g)); }
-.stage:active { cursor: grabbing; }
 canvas, .poster { position: absolute; inset: 0; width: 100%; height: 100%; }
 .poster { display: block; object-fit: contain; }
 .shown .poster { display: none; }
@@ -35,7 +34,7 @@ canvas, .poster { position: absolute; inset: 0; width: 100%; height: 100%; }
 .bar { display: flex; gap: .6em; align-items: center; margin-top: .5em; }
 button { font: inherit; width: 2.6em; height: 2.2em; border: 1px solid color-mix(in srgb, currentColor 30%, transparent); border-radius: 7px; background: none; color: inherit; cursor: pointer; }
 i { display: block; width: 11px; height: 13px; margin: auto; background: currentColor; forced-color-adjust: none; clip-path: polygon(0 0, 100% 50%, 0 100%); }
-.runs > i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
+.runs i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
 .big { display: none; position: absolute; inset: auto auto 10px 10px; width: 44px; height: 44px; border-radius: 50%; border-color: currentColor; color: #fff; background: #000b; }
 .waits .big, :host([bare]) .runs:is(:hover, :focus-within) .big { display: block; }
 .waits .big { inset: 50% auto auto 50%; width: 64px; height: 64px; margin: -32px; }
@@ -88,13 +87,13 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #figure = null;
   #playable = 0;
   #isWhole = false;
-  // Frames that the camera has looked at, and the file's bytes at the last look.
+  // Frames that the camera has looked at.
   #surveyed = 0;
-  #opened = 0;
   // What draws the clip's scalars, and what steers a character.
   #face = null;
   #actor = null;
-  #oled = null;
+  // The modules of the looks that were shown.
+  #looks = {};
   #request = 0;
   #before = 0;
   #at = 0;
@@ -208,7 +207,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   get src() { return this.getAttribute("src"); }
   set src(src) { this.setAttribute("src", src); }
   get currentSrc() { return this.src === null ? "" : new URL(this.src, document.baseURI).href; }
-  get look() { return this.getAttribute("look") === "oled" ? "oled" : "lines"; }
+  get look() { return ["solid", "oled"].find((look) => look === this.getAttribute("look")) ?? "lines"; }
   set look(look) { this.setAttribute("look", look); }
   get fit() { return this.getAttribute("fit") === "whole" ? "whole" : "follow"; }
   set fit(fit) { this.setAttribute("fit", fit); }
@@ -308,10 +307,9 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const wanted = !this.#paused && !had;
     // Who asked to play before there was a clip gets the next one.
     if (!wanted) this.pause();
-    this.#face?.close();
     this.#actor?.close();
     this.#clip = this.#player = this.#figure = this.#face = this.#actor = this.#abort = this.#lazy = null;
-    this.#playable = this.#at = this.#surveyed = this.#opened = 0;
+    this.#playable = this.#at = this.#surveyed = 0;
     this.#isWhole = this.#ended = false;
     Object.assign(this, empty());
     if (had) this.#dispatch("emptied");
@@ -332,45 +330,23 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   async #receive(what, signal, name) {
+    const { url } = what;
     if (what instanceof Response) {
       if (!what.ok) throw new Error(`the clip cannot be fetched: ${what.status} ${what.statusText}`);
       // With an encoding, it is the length of something else.
       if (!what.headers.get("Content-Encoding")) this.total = +what.headers.get("Content-Length") || 0;
       what = what.body;
     }
-    if (!(what instanceof ReadableStream)) what = new Blob([what]).stream();
-    if (this.total > MOST) throw new Error(`the file has ${this.total} bytes; a clip may have ${MOST} here`);
-    const reader = what.getReader();
-    const parts = [];
     let file;
-    const join = async () => {
-      file = new Uint8Array(await new Blob(parts).arrayBuffer());
-      signal.throwIfAborted();
-    };
-    try {
-      for (;;) {
-        const { done, value } = await reader.read().catch(() => ({ done: true }));
-        signal.throwIfAborted();
-        if (done) break;
-        parts.push(value);
-        const length = (this.received += value.length);
-        if (length > MOST) throw new Error(`a clip may have ${MOST} bytes here`);
-        // A bank's clips may lie anywhere in it. A clip is looked at again once it has an eighth more, a short one at once.
-        if (parts[0][1] === 98) continue;
-        if (length < (this.total || Infinity) && length * 8 > this.#opened * 9 - 4096) {
-          this.#opened = length;
-          await join();
-          const problem = await this.#open(file, undefined, signal, true);
-          // A file of another kind need not be read to its end.
-          if (problem && problem !== "ends early") throw this.#problem(problem);
-        }
-        this.#dispatch("progress");
-      }
-    } finally {
-      reader.cancel().catch(() => {});
+    // What is in the page (data:, blob:), or comes in one packet, has nothing to show before.
+    if (!(what instanceof ReadableStream) || /^[bd]/.test(url) || (url && this.total && this.total < PACKET)) file = new Uint8Array(await new Response(what).arrayBuffer());
+    else {
+      const { arrived } = await import("./pantin-stream.js");
+      file = await arrived(this, what, signal, (file) => this.#open(file, undefined, signal, true), (problem) => this.#problem(problem), () => this.#tell());
     }
+    signal.throwIfAborted();
+    this.received = file.length;
     let rig;
-    await join();
     if (file[0] === 80 && file[1] === 98) {
       const { bankOf, steer } = await import("./pantin-character.js");
       signal.throwIfAborted();
@@ -415,7 +391,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const [frame, isFirst, had] = [this.frame, !this.#clip, this.#playable];
     if (clip.scalars.length && !this.#face) {
       const { faceOf } = await import("./pantin-face.js");
-      const face = await faceOf(clip);
+      const face = await faceOf(clip, maths);
       signal.throwIfAborted();
       this.#face = face;
     }
@@ -500,9 +476,9 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const { clientWidth, clientHeight } = this.stage;
     const scale = Math.min(devicePixelRatio || 1, 2047 / clientWidth);
     const isOled = this.look === "oled";
-    const [width, height] = isOled ? [WIDTH, HEIGHT] : [clientWidth, clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
+    const [width, height] = isOled ? [128, 64] : [clientWidth, clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    if (isOled && !this.#oled) this.#display().then(() => this.draw(), () => {});
+    if (this.look !== "lines" && !this.#looks[this.look]) this.#display().then(() => this.#aim(), () => {});
     this.#colors();
     const [orbit, tilt] = [Math.round(this.#orbit), Math.round(this.#tilt)];
     const hasBody = actor || clip.joints.length;
@@ -521,8 +497,11 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     else if (hasBody) {
       const player = this.#player;
       const { frame } = player;
-      this.#figure ??= figureOf(clip, player.seek(0).raw);
-      this.#figure.aim(...view, visitor(clip, this.#playable, (frame) => player.seek(frame).raw));
+      const figure = (this.#figure ??= figureOf(clip, player.seek(0).raw));
+      const visit = visitor(clip, this.#playable, (frame) => player.seek(frame).raw);
+      figure.solid = this.#looks[this.look]?.solidOf?.(clip, figure, figure.solid);
+      figure.aim(...view, visit, figure.solid?.cover);
+      figure.solid?.learn(visit, this.#playable);
       player.seek(frame);
     }
     face?.aim(side, hasBody ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
@@ -702,24 +681,25 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     }
   }
 
-  // Passes the frame's strokes, from far to near.
-  #each(stroke) {
+  // Passes the frame's strokes, from far to near: all, or those of a face beside a body.
+  #each(stroke, hasBody = true) {
     const aside = this.#aside;
     const body = aside ? (x, y, u, v, shade, part, width) => stroke(x + aside, y, part === 4 ? u : u + aside, v, shade, part, width) : stroke;
     if (!this.playable) return;
     if (this.#actor) return this.#actor.each(body);
-    this.#figure?.each(body);
+    if (hasBody) this.#figure?.each(body);
     this.#face?.each(this.#player.raw, stroke);
   }
 
   // The greys of the 128x64 display, 17 times 0 to 15; in that look alone, once its module has loaded.
   grey() {
-    return this.#oled.greysOf((stroke) => this.#each(stroke));
+    return this.#looks.oled.greysOf((stroke) => this.#each(stroke));
   }
 
-  // The module that draws the display's pixels, in that look alone.
+  // The module of another look than lines.
   async #display() {
-    if (this.look === "oled") this.#oled ??= await import("./pantin-oled.js");
+    if (this.look === "oled") this.#looks.oled ??= await import("./pantin-oled.js");
+    if (this.look === "solid") this.#looks.solid ??= await import("./pantin-solid.js");
   }
 
   // Calls the script that writes files, which is loaded only now.
@@ -747,13 +727,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   draw() {
-    if (this.look === "lines") this.#drawLines();
-    else if (this.#oled) {
-      const image = this.context.createImageData(WIDTH, HEIGHT);
-      const pixels = new Uint32Array(image.data.buffer);
-      this.grey().forEach((grey, index) => (pixels[index] = 0xff000000 | (grey * 0x10101)));
-      this.context.putImageData(image, 0, 0);
-    }
+    if (this.look !== "oled") this.#drawLines();
+    else this.#looks.oled?.draw(this.context, (stroke) => this.#each(stroke));
   }
 
   #drawLines() {
@@ -762,6 +737,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const mix = (ink, part) => `rgb(${[0, 1, 2].map((index) => Math.round(paper[index] + (ink[index] - paper[index]) * part))})`;
     context.clearRect(0, 0, canvas.width, canvas.height);
     const thin = Math.max(1, canvas.height / 280);
+    const solid = this.look === "solid" && this.#figure?.solid;
+    if (solid) solid.draw(context, this.#tones, canvas.height, this.#aside / 16);
     this.#each((x, y, u, v, shade, part, width) => {
       context.strokeStyle = this.#inks[part * 256 + shade] ??= mix(this.#tones[part], shade / 255);
       // A path of its own for each, without round ends and one pixel wide where nobody sees the difference: a face has 900 lines, and browsers take several
@@ -777,7 +754,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
         context.globalCompositeOperation = "source-over";
       } else context.moveTo(x / 16, y / 16), context.lineTo(u / 16, v / 16);
       context.stroke();
-    });
+    }, !solid);
   }
 
   #tell() {
@@ -801,9 +778,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const [now, all] = [(frame * this.#frameTime) / 1e9, this.duration || 0].map((seconds) => seconds.toFixed(2));
     this.output.textContent = frames ? `${now} / ${all}` : "";
     this.scrubber.setAttribute("aria-valuetext", `${now} ${words.of} ${all} ${words.seconds}`);
-    const loads = this.#abort && !this.#abort.done && this.received;
-    const coming = !loads ? "" : !playable ? `${this.received} ${words.bytes}; ${words.first}` : playable < frames ? `${this.received} ${words.bytes}, ${playable} ${words.of} ${frames} ${words.frames}` : "";
-    const said = this.trouble || coming;
+    const said = this.trouble || this.coming;
     if (this.#status.textContent !== said) this.#status.textContent = said;
   }
 

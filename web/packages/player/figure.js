@@ -89,6 +89,8 @@ const turnAbout = (turns, at, axis, angle) => {
     turns[c] = (turns[c] * cosine - from * sine + HALF) >> 15;
   }
 };
+// What a face is drawn with, too: a turn about an axis, sine and cosine, and the image of a vector.
+export const maths = [turnAbout, (angle) => (turnTo(angle), [sine, cosine]), (turns, v) => (imageOfAny(turns, 0, ...v), [...IMAGE])];
 const scaledBy = (x, scale) => (x * (scale >> 7) + ((x * (scale & 127)) >> 7) + HALF) >> 15;
 // Turns by a quaternion of length 1.
 const turnByUnit = (turns, at, w, x, y, z) => {
@@ -210,7 +212,7 @@ const skeletonOf = (clip, raw) => {
     info.at = found.length;
     const parent = above ? above.at : -1;
     const place = isPlace ? joints[index].rest.map((value) => shifted(value, unit - rig.exponent)) : bone;
-    found.push({ offset: place, parent, part, drives, isMoved, isShown: !isPlace && length > 0 && parent >= 0 });
+    found.push({ offset: place, parent, part, drives, isMoved, isShown: !isPlace && length > 0 && parent >= 0, index });
     if (isHead) {
       const tenth = Math.floor(size / 10);
       const end = infos.find((end) => joints[end.index].isEnd && end.above === info && end.length > Math.floor(tenth / 3));
@@ -232,7 +234,7 @@ const narrow = (x) => clamp(x, -32768, 32767);
 /**
  * The figure of a clip, for poses of its raw values; `raw` is the first of them. `aim` sets the camera up by poses that `visit` passes to its argument one by one.
  * `place` takes a pose, and `each` passes its strokes, from far to near: two ends in sixteenths of a pixel (of a head, its middle and its radius), a shade of at
- * most 255, the part of the picture, and a width in pixels.
+ * most 255, the part of the picture, and a width in pixels. `ground` passes those of the ground alone.
  */
 export const figureOf = (clip, raw) => {
   const { unit, size, hips, sides, bones, radius, crown } = skeletonOf(clip, raw);
@@ -330,10 +332,13 @@ export const figureOf = (clip, raw) => {
     return [...[0, 1].map((axis) => (points[3 * crown + axis] + points[from + axis]) >> 1), narrow((wide * zoomOfCrown) >> 14)];
   };
 
-  return {
+  const figure = {
     place,
-    // Degrees; `upAxis` takes the place of the axis that the rig states. A camera that does not follow the figure stands still.
-    aim(width, rows, orbit, tilt, isFollowing, upAxis, visit) {
+    // What another look of the figure is made of, in a row: names of properties take bytes that lines need not have.
+    inner: () => [bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target],
+    // Degrees; `upAxis` takes the place of the axis that the rig states. A camera that does not follow the figure stands still. `cover` passes circles for which it
+    // makes room in place of the head's.
+    aim(width, rows, orbit, tilt, isFollowing, upAxis, visit, cover) {
       let low = [0, 0, 0].fill(Infinity);
       let high = [0, 0, 0].fill(-Infinity);
       const leftward = [0, 0, 0];
@@ -384,14 +389,15 @@ export const figureOf = (clip, raw) => {
       visit((raw) => {
         place(raw);
         for (const index of lines) for (const end of [index, bones[index].parent]) widen(points[3 * end], points[3 * end + 1], 0);
-        if (crown) widen(...head());
+        if (cover) cover(widen);
+        else if (crown) widen(...head());
       });
       const fit = (pixels, covered) => Math.floor((16 * Math.floor((pixels * 9) / 10) * (TRIAL / 256)) / Math.max(1, Math.floor(covered / 256)));
       setScale(clamp(Math.min(fit(rows, bottom - top), fit(width, 2 * side)), 1, TRIAL));
       centre = [width * 8, rows * 8 - Math.trunc((Math.trunc((top + bottom) / 2) * scale) / TRIAL)];
     },
-    each(stroke) {
-      // [lines] The ground, about the target: a grid that stays in its place.
+    // [lines] The ground, about the target: a grid that stays in its place.
+    ground(stroke) {
       const count = isDotted ? DOT_ROWS : GROUND_ROWS;
       const step = 1 << spacing;
       const inView = (vector) => (imageOfAny(view, 0, ...vector), [...IMAGE]);
@@ -419,6 +425,9 @@ export const figureOf = (clip, raw) => {
           }
         }
       }
+    },
+    each(stroke) {
+      figure.ground(stroke);
       const breadth = Math.floor(scale / 64);
       lines.sort((one, other) => depthOf(other) - depthOf(one) || one - other);
       for (const index of lines) {
@@ -429,6 +438,7 @@ export const figureOf = (clip, raw) => {
       if (crown) stroke(...head(), 0, shadeOf(depthOf(crown) >> 1), HEAD, 1);
     },
   };
+  return figure;
 };
 
 // Passes some of a clip's poses, of the frames that there are: about as many as the camera needs. Of a long clip they are of a first part, as in the firmware.

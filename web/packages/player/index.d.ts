@@ -18,6 +18,9 @@ export interface PoseTable {
 /** What a player is loaded from. */
 export type Source = string | URL | Response | ReadableStream<Uint8Array> | Blob | ArrayBuffer | Uint8Array<ArrayBuffer> | PoseTable;
 
+/** Smooth lines, a body with volume, or a display of 128x64 pixels. */
+export type Look = "lines" | "solid" | "oled";
+
 /** Numbers of the clip that is loaded; zeros before its first frame has arrived. */
 export interface Facts {
   readonly frames: number;
@@ -49,6 +52,9 @@ interface OwnEventMap extends Record<Plain, CustomEvent<null>> {
 /** The element's events; its own take the place of an element's of the same name. */
 export type PantinPlayerEventMap = Omit<HTMLElementEventMap, keyof OwnEventMap> & OwnEventMap;
 
+/** Listeners for the element's own events, as template languages write them: `onended`, `onheard`, ... */
+export type PantinPlayerListeners = { [Name in keyof OwnEventMap as `on${Name}`]?: (event: OwnEventMap[Name]) => void };
+
 /** The attributes, as a template language writes them. */
 export interface PantinPlayerAttributes {
   src?: string;
@@ -57,7 +63,7 @@ export interface PantinPlayerAttributes {
   loading?: "lazy" | "eager";
   poster?: string;
   crossorigin?: "" | "anonymous" | "use-credentials";
-  look?: "lines" | "oled";
+  look?: Look;
   speed?: number | string;
   from?: number | string;
   to?: number | string;
@@ -101,7 +107,7 @@ export declare class PantinPlayer extends HTMLElement {
   src: string | null;
   autoplay: boolean;
   loop: boolean;
-  look: "lines" | "oled";
+  look: Look;
   fit: "follow" | "whole";
   /** Where the figure stands in the picture. */
   align: "left" | "center" | "right";

@@ -47,3 +47,11 @@ export function greysOf(each) {
   });
   return greys;
 }
+
+// Draws them.
+export function draw(context, each) {
+  const image = context.createImageData(WIDTH, HEIGHT);
+  const pixels = new Uint32Array(image.data.buffer);
+  greysOf(each).forEach((grey, index) => (pixels[index] = 0xff000000 | (grey * 0x10101)));
+  context.putImageData(image, 0, 0);
+}

@@ -4,30 +4,45 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
+use xtask::paths;
 
-use crate::script;
+use crate::{inline, script, tools};
 
+/// A module that the build writes: the face's model as a text.
+const FACE_MODEL: &str = "player/face-model.js";
 /// The modules of each script of the player, below `web/packages`. The last one keeps its exports.
-pub const SCRIPTS: [(&str, &[&str]); 8] = [
+pub const SCRIPTS: [(&str, &[&str]); 11] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
+    ("pantin-stream.js", &["player/stream.js"]),
     ("pantin-export.js", &["player/export.js"]),
     ("pantin-oled.js", &["player/oled.js"]),
+    ("pantin-solid.js", &["player/solid.js"]),
     ("pantin-words.js", &["player/words.js"]),
     ("pantin-table.js", &["player/table.js"]),
-    ("pantin-face.js", &["player/wasm.js", "player/face.js"]),
+    ("pantin-face.js", &["decoder/names.js", FACE_MODEL, "player/face-lines.js", "player/face.js"]),
+    ("pantin-bars.js", &["player/bars.js"]),
     ("pantin-character.js", &["player/wasm.js", "player/character.js"]),
 ];
 /// The modules of the decoder's minified build.
 pub const DECODER: [&str; 5] =
     ["decoder/tables.js", "decoder/names.js", "decoder/clip.js", "decoder/pose.js", "decoder/index.js"];
 
+/// The decoder's minified build.
+pub fn decoder() -> Result<Vec<u8>> {
+    tools::minified(bundle(&paths::root().join("web/packages"), &DECODER)?.into_bytes())
+}
+
 /// The modules as one script, each behind those that it imports. Their names share one scope: a name that two of them declare is an error.
 pub fn bundle(packages: &Path, modules: &[&str]) -> Result<String> {
     let (mut whole, mut names) = (String::new(), HashSet::new());
     for (index, module) in modules.iter().enumerate() {
         let path = packages.join(module);
-        let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        let text = if *module == FACE_MODEL {
+            face_model(&std::fs::read(paths::root().join("firmware/face/face.model"))?)?
+        } else {
+            std::fs::read_to_string(&path).with_context(|| path.display().to_string())?
+        };
         let mut out = String::new();
         for line in text.lines() {
             // Documentation, whose apostrophes begin no texts.
@@ -52,6 +67,31 @@ pub fn bundle(packages: &Path, modules: &[&str]) -> Result<String> {
         whole += &if module.starts_with("player/") { String::from_utf8(script::shortened(out.as_bytes())?)? + "\n" } else { out };
     }
     Ok(whole)
+}
+
+/// Bytes of a face's model before its points, and of a point with its normal, of a triangle and of a name.
+const HEAD: usize = 21;
+const POINT: usize = 9;
+const TRIANGLE: usize = 3;
+const NAME: usize = 7;
+
+/// A face's model as the script reads it, for fewer bytes as sent: triangles as the differences of their corners from those before, and names without the highest
+/// byte of their hashes, as three bytes tell them apart.
+fn face_model(model: &[u8]) -> Result<String> {
+    let number = |at: usize| -> Result<usize> {
+        let bytes = model.get(at..).and_then(|rest| rest.first_chunk()).context("a face's model")?;
+        Ok(u16::from_le_bytes(*bytes).into())
+    };
+    let [middles, pairs, triangles, names] = [number(3)?, number(5)?, number(11)?, number(15)?];
+    let first = HEAD + POINT * (middles + pairs);
+    let (last, names) = (first + TRIANGLE * triangles, model.len().saturating_sub(NAME * names));
+    ensure!(last <= names, "a face's model");
+    let mut bytes = model[..names].to_vec();
+    for at in first + TRIANGLE..last {
+        bytes[at] = model[at].wrapping_sub(model[at - TRIANGLE]);
+    }
+    bytes.extend(model[names..].chunks_exact(NAME).flat_map(|name| name[..3].iter().chain(&name[4..])));
+    Ok(format!("export const FACE_MODEL = `{}`;", inline::text(&bytes)))
 }
 
 /// The names that a line declares at the top of a module.

@@ -19,17 +19,12 @@ pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
     let mut player = script(PLAYER[0])?;
     let mut before = String::new();
     if has_scalars {
-        let [module, face] = FACE;
-        let url = format!("new URL(\"./{module}\",import.meta.url)");
+        let [face] = FACE;
         let import = format!("import(\"./{face}\")");
-        let face = script(face)?;
-        ensure!(face.contains(&url) && player.contains(&import), "no {url} or no {import}");
-        let face = face.replace(&url, "globalThis.pantinFaceModule");
+        ensure!(player.contains(&import), "no {import}");
         before = format!(
-            "const pantinUrl=(text,type)=>URL.createObjectURL(new Blob([text],{{type}}));globalThis.pantinFaceModule=pantinUrl(Uint8Array.from(`{}`,letter=>letter.charCodeAt()));\
-             const pantinFace=pantinUrl(Uint8Array.from(`{}`,letter=>letter.charCodeAt()),\"text/javascript\");",
-            text(&read(module)?),
-            text(face.as_bytes())
+            "const pantinFace=URL.createObjectURL(new Blob([Uint8Array.from(`{}`,letter=>letter.charCodeAt())],{{type:\"text/javascript\"}}));",
+            text(&read(face)?)
         );
         player = player.replace(&import, "import(pantinFace)");
     }
@@ -44,10 +39,10 @@ pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
 }
 
 /// Bytes as the letters of a template literal in a page, each modulo 256: brotli makes hardly more of them than of the bytes, and a third more of base64.
-fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     let letter = |&byte: &u8| {
         // Letters that a page or a literal takes for something else, or changes.
-        let high = if b"\0\r<\\`$".contains(&byte) { 0x100 } else { 0 };
+        let high = if b"\0\n\r<\\`$".contains(&byte) { 0x100 } else { 0 };
         char::from_u32(u32::from(byte) + high).unwrap_or_default()
     };
     bytes.iter().map(letter).collect()
@@ -62,6 +57,6 @@ mod tests {
         let bytes: Vec<u8> = (0..=255).collect();
         let text = text(&bytes);
         assert_eq!(text.chars().map(|letter| letter as u32 as u8).collect::<Vec<_>>(), bytes);
-        assert!(!text.contains(['\0', '\r', '<', '\\', '`', '$']));
+        assert!(!text.contains(['\0', '\n', '\r', '<', '\\', '`', '$']));
     }
 }

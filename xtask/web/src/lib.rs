@@ -1,6 +1,6 @@
 //! The web page: its modules, its files and our clips, and the npm packages.
 
-mod bundle;
+pub mod bundle;
 mod inline;
 pub mod npm;
 mod pack;

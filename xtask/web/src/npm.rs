@@ -15,7 +15,7 @@ use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
-const CHECK: [&str; 10] = [
+const CHECK: [&str; 13] = [
     "bundles.mjs",
     "check.mjs",
     "check.ts",
@@ -25,6 +25,9 @@ const CHECK: [&str; 10] = [
     "pixels.html",
     "pixels.js",
     "pixels.mjs",
+    "preact.tsx",
+    "react.tsx",
+    "templates.ts",
     "tsconfig.json",
 ];
 /// Files that three.js draws as their own animation moves them and as a clip of it does: a fox, a man with a texture of stripes, a captured body. Each
@@ -59,9 +62,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
         for name in files.iter().filter_map(Value::as_str).chain(["package.json"]) {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
-                "decoder.min.js" => {
-                    tools::minified(bundle::bundle(&paths::root().join("web/packages"), &bundle::DECODER)?.into_bytes())?
-                }
+                "decoder.min.js" => bundle::decoder()?,
                 "turns.min.js" => tools::minified(read(&source.join("turns.js"))?)?,
                 name if [&PLAYER[..], &OTHERS, &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?

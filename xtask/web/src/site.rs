@@ -22,11 +22,8 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
 
 /// The modules' packages and features, the profiles that they are built in, and their names in the site.
-pub const MODULES: [(&str, &str, &str, &str); 3] = [
-    ("pantin-web-player", "character,poses", "release", CHARACTER[0]),
-    ("pantin-web-face", "", "release", FACE[0]),
-    ("pantin-web-converter", "", "converter", CONVERTER[1]),
-];
+pub const MODULES: [(&str, &str, &str, &str); 2] =
+    [("pantin-web-player", "character,poses", "release", CHARACTER[0]), ("pantin-web-converter", "", "converter", CONVERTER[1])];
 
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {
@@ -38,12 +35,20 @@ pub struct Size {
 
 /// What a page that plays clips loads.
 pub const PLAYER: [&str; 1] = ["pantin-player.js"];
-/// What it loads too: once a picture has the focus, for the display's look, for a table of poses, in other languages than English.
-pub const OTHERS: [&str; 4] = ["pantin-controls.js", "pantin-oled.js", "pantin-table.js", "pantin-words.js"];
+/// What it loads too: once a picture has the focus, for files of more than a packet, for the solid look and the display's, for scalars that drive no face, for a table of poses, in other languages than English.
+pub const OTHERS: [&str; 7] = [
+    "pantin-controls.js",
+    "pantin-stream.js",
+    "pantin-solid.js",
+    "pantin-oled.js",
+    "pantin-bars.js",
+    "pantin-table.js",
+    "pantin-words.js",
+];
 /// What it loads too once a picture or a recording is saved.
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
-pub const FACE: [&str; 2] = ["pantin-face.wasm", "pantin-face.js"];
+pub const FACE: [&str; 1] = ["pantin-face.js"];
 /// What it loads too for a bank; the module for one with a state machine.
 pub const CHARACTER: [&str; 2] = ["pantin-character.wasm", "pantin-character.js"];
 /// What is loaded beside it once a motion is dropped.
@@ -84,6 +89,12 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
 pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
     let bytes = |name| std::fs::metadata(out.join(name)).ok().map(|file| file.len() as usize);
     names.iter().filter_map(|name| Some(Size { name, bytes: bytes(name)? })).collect()
+}
+
+/// The firmware's face code as a module, with which tests compare what draws faces here.
+pub fn face_module() -> Result<Vec<u8>> {
+    setup::rust_target(TARGET)?;
+    module("pantin-web-face", "", "release")
 }
 
 /// A package of the web workspace as a module.

@@ -33,7 +33,14 @@ pub fn installed() -> bool {
 /// A script with short names, or as it is.
 pub fn minified(script: Vec<u8>) -> Result<Vec<u8>> {
     let script = with_let(&String::from_utf8(script).context("a script that is not UTF-8")?).into_bytes();
-    let options = ["--module", "--compress", "passes=3,unsafe=true", "--mangle", "--ecma", "2022"];
+    let options = [
+        "--module",
+        "--compress",
+        "passes=3,unsafe=true,pure_getters=true,if_return=false,comparisons=false,lhs_constants=false,reduce_funcs=false",
+        "--mangle",
+        "--ecma",
+        "2022",
+    ];
     run("terser/bin/terser", "js", script, |from, to| {
         let mut arguments = vec![from.into()];
         arguments.extend(options.map(PathBuf::from));
@@ -58,10 +65,10 @@ pub fn optimized(module: Vec<u8>) -> Result<Vec<u8>> {
 /// The script with `let` in place of `const`: it is shorter, and no constant of a script that runs is assigned to.
 fn with_let(script: &str) -> String {
     let mut out = String::with_capacity(script.len());
-    for (index, part) in script.split("const ").enumerate() {
-        let is_word = out.chars().last().is_none_or(|before| before.is_whitespace() || ";{}(".contains(before));
+    for (index, part) in script.split("const").enumerate() {
+        let begins = out.chars().last().is_none_or(|before| before.is_whitespace() || ";{}(".contains(before));
         if index > 0 {
-            out += if is_word { "let " } else { "const " };
+            out += if begins && part.starts_with([' ', '[', '{']) { "let" } else { "const" };
         }
         out += part;
     }

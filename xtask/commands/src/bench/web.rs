@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use harness::paths;
 use harness::web::browser::Browser;
-use harness::web::{self, CONVERTER, FACE, PLAYER, tools};
+use harness::web::{self, CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, tools};
 use serde_json::{Value, json};
 
 use super::{Goal, table};
@@ -11,6 +11,10 @@ use xtask::steps::say;
 
 /// Bytes of a page's player: for clips of bodies, and with faces; as sent with brotli, and raw.
 const MOST: [[f64; 2]; 2] = [[14.0 * 1024.0, 36.0 * 1024.0], [22.0 * 1024.0, 72.0 * 1024.0]];
+/// Bytes of the player with our character, of all its scripts, and of the decoder by itself, as sent.
+const MOST_WITH: [f64; 3] = [32.0 * 1024.0, 40.0 * 1024.0, 5.2 * 1024.0];
+/// Our character.
+const BANK: &str = "clips/character.ptb";
 /// Lines: the page, latency in ms, and kilobits per second; and the time to the first figure in seconds.
 const LINES: [(&str, &str, f64, f64, f64); 3] = [
     ("fast 3G", "embed.html", 400.0, 1440.0, 1.0),
@@ -49,7 +53,7 @@ pub fn run() -> Result<Vec<Goal>> {
 fn sizes() -> Result<Vec<Goal>> {
     let folder = paths::root().join("target/web");
     let (mut rows, mut sums) = (vec![], vec![]);
-    for names in [&PLAYER[..], &FACE, &CONVERTER] {
+    for names in [&PLAYER[..], &FACE, &CONVERTER, &CHARACTER, &OTHERS, &EXPORT] {
         let mut sum = [0; 3];
         for &name in names {
             let bytes = |end: &str| {
@@ -62,7 +66,15 @@ fn sizes() -> Result<Vec<Goal>> {
         sums.push(sum);
     }
     table::print(&["file", "brotli", "gzip", "raw bytes"], &rows);
-    let [player, face, converter] = sums[..] else { return Ok(vec![]) };
+    let [player, face, converter, character, others, export] = sums[..] else { return Ok(vec![]) };
+    let read = |name: &str| std::fs::read(folder.join(name)).with_context(|| name.to_owned());
+    let bank = read(BANK)?.len();
+    // The character's script, without its module.
+    let scripts = player[0] + face[0] + others[0] + export[0] + read(&format!("{}.br", CHARACTER[1]))?.len();
+    let alone = tempfile::tempdir().context("a folder for the decoder")?;
+    std::fs::write(alone.path().join("decoder.js"), web::bundle::decoder()?).context("the decoder")?;
+    tools::compress(alone.path())?;
+    let decoder = std::fs::read(alone.path().join("decoder.js.br")).context("the decoder")?.len();
     if !tools::installed() {
         say("   terser and wasm-opt are missing: the files are larger than they could be");
     }
@@ -72,6 +84,21 @@ fn sizes() -> Result<Vec<Goal>> {
         Goal::at_most("a page with bodies, raw", player[2] as f64, bodies[1], 0, "bytes"),
         Goal::at_most("a page with faces, as sent (brotli)", (player[0] + face[0]) as f64, faces[0], 0, "bytes"),
         Goal::at_most("a page with faces, raw", (player[2] + face[2]) as f64, faces[1], 0, "bytes"),
+        Goal::at_most(
+            "a page with our character and its bank, as sent (brotli)",
+            (player[0] + character[0] + bank) as f64,
+            MOST_WITH[0],
+            0,
+            "bytes",
+        ),
+        Goal::at_most(
+            "all scripts of the player, without WebAssembly, as sent (brotli)",
+            scripts as f64,
+            MOST_WITH[1],
+            0,
+            "bytes",
+        ),
+        Goal::at_most("the decoder alone, minified, as sent (brotli)", decoder as f64, MOST_WITH[2], 0, "bytes"),
         Goal::told("a page with bodies, gzip", format!("{} bytes", player[1])),
         Goal::told("converter, brotli", format!("{} bytes", converter[0])),
         Goal::told("converter, raw", format!("{} bytes", converter[2])),
