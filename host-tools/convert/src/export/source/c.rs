@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_character_is_an_array_with_its_length() {
-        let header = c_header_of_look(&[1, 2, 3], "big cat");
+        let header = c_header_of_look(&[1, 2, 3], "big_cat");
         assert!(header.contains("#define LOOK_BIG_CAT_LEN 3\n") && header.contains("= {\n    1, 2, 3,\n};"), "{header}");
     }
 
