@@ -413,7 +413,7 @@ static pantin_result start_track(pantin_track *t, const pantin_clip *clip, size_
     }
     result = go_to(t, frame);
     t->rest = 0;
-    t->ended = t->closed = t->seam.known = 0;
+    t->ended = t->closed = t->lapped = t->seam.known = 0;
     set_speed(t, speed);
     return result;
 }
@@ -474,9 +474,11 @@ static pantin_result lead_to_start(pantin_track *t) {
 }
 
 /* The root at one instant, with values of its channels or what they move to. */
-enum { NEXT = 0, FIRST };
+enum { NEXT = 0, FIRST, NOW };
 
-static int32_t moved(int32_t p, const pantin_channel *c, uint8_t what) { return what == NEXT ? sum(p, (int32_t)c->v) : (int32_t)c->w; }
+static int32_t moved(int32_t p, const pantin_channel *c, uint8_t what) {
+    return what == NEXT ? sum(p, (int32_t)c->v) : what == FIRST ? (int32_t)c->w : p;
+}
 
 static void root_turns(const pantin_animator *a, uint8_t what, int32_t *turns) {
     const pantin_player *p = &a->track.player;
@@ -503,17 +505,18 @@ static void root_at(const pantin_animator *a, uint8_t what, int32_t *place, int3
         }
     }
     root_turns(a, what, turns);
-    *yaw = unit_of(a->turns.shape, &a->root, turns, turn_count(a), q) ? yaw_of_unit(a, q) : yaw_of(a, p->pose);
+    /* Less than a whole rotation does not turn from lap to lap. */
+    *yaw = unit_of(a->turns.shape, &a->root, turns, turn_count(a), q) ? yaw_of_unit(a, q) : 0;
 }
 
-static void find_seam(pantin_animator *a, const int32_t *next, int32_t next_yaw) {
+static void find_seam(pantin_animator *a, uint8_t what, const int32_t *next, int32_t next_yaw) {
     const pantin_clip *clip = &a->track.clip;
     pantin_seam *seam = &a->track.seam;
     int64_t units = (int64_t)RETURNS_CM * 1000000, way[2];
     int32_t yaw;
     uint8_t i, near = 1, turns;
     int8_t shift = clip->exponent;
-    root_at(a, FIRST, seam->first, &yaw);
+    root_at(a, what, seam->first, &yaw);
     units = shift >= 0 ? units >> shift : (int64_t)((uint64_t)units << (shift < -40 ? 40 : -shift));
     units = clamp(units / (int64_t)clip->rig.unit_micro_cm, 0, units > 0 ? units : 0);
     yaw = difference(next_yaw, yaw);
@@ -540,7 +543,7 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
     if (result != PANTIN_OK) return result;
     t->closed = 1;
     if (!a) return PANTIN_OK;
-    if (!t->seam.known) find_seam(a, next, next_yaw);
+    if (!t->seam.known) find_seam(a, FIRST, next, next_yaw);
     root_turns(a, FIRST, turns);
     count = t->seam.yaw ? turn_count(a) : 0;
     if (t->seam.yaw) {
@@ -562,6 +565,24 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
         c->v = (uint32_t)difference(to, t->player.pose[c->channel]);
     }
     return PANTIN_OK;
+}
+
+/* Whether the crate keeps how a loop begins, which shows where it goes over the seam. */
+static void keep_start(pantin_track *t, const pantin_animator *a) {
+    if (a && a->left == 0 && t->clip.looped && moving_count(&t->player) == t->player.moving_count) t->lapped = 1;
+}
+
+/* Goes from the last frame of a loop to frame 0. In the first lap, learns where a lap takes the root. */
+static pantin_result lap(pantin_track *t, pantin_animator *a) {
+    int32_t next[2] = {0, 0}, next_yaw = 0;
+    uint8_t learns = a && !t->seam.known;
+    pantin_result result;
+    /* Without the lap to come, the root moves on as it did. */
+    if (learns) root_at(a, NEXT, next, &next_yaw);
+    result = go_to(t, 0);
+    if (result == PANTIN_OK && learns) find_seam(a, NOW, next, next_yaw);
+    if (!t->lapped) keep_start(t, a);
+    return result;
 }
 
 /* A stretch of play. */
@@ -602,7 +623,9 @@ static pantin_result advance(pantin_track *t, pantin_animator *a, uint64_t elaps
     }
     if (p->laps != 0 && !t->seam.known && a) {
         result = go_to(t, 0xffffffffu);
-        if (result == PANTIN_OK) result = close_loop(t, a);
+        if (result == PANTIN_OK) result = lap(t, a);
+    } else if (p->laps > 0 && !t->lapped) {
+        result = lap(t, a);
     }
     if (result == PANTIN_OK) result = go_to(t, (uint32_t)to);
     if (result == PANTIN_OK && t->rest != 0) result = close_loop(t, a);
@@ -623,8 +646,7 @@ static pantin_result step_track(pantin_track *t, pantin_animator *a, passage *p)
     if (p->from + 1 < t->clip.frames) {
         result = go_to(t, p->from + 1);
     } else if (t->clip.looped) {
-        if (!t->seam.known && a) result = close_loop(t, a);
-        if (result == PANTIN_OK) result = go_to(t, 0);
+        result = lap(t, a);
         p->laps = 1;
     } else {
         t->ended = 1;
@@ -792,25 +814,125 @@ static void step_offset(pantin_offset *o) {
     o->w = sum(o->w, o->k);
 }
 
+static void step_transition(pantin_animator *a) {
+    uint16_t c;
+    a->left--;
+    for (c = 0; c < a->channels; c++) {
+        pantin_offset *o = &a->memory->offsets[c];
+        if (o->d | o->v) step_offset(o);
+    }
+    solve_again(a);
+}
+
 static void run_transition(pantin_animator *a, uint64_t elapsed_ns) {
     uint64_t rest = a->rest_ns + elapsed_ns;
     uint32_t frame_time = a->track.clip.frame_time_ns;
+    for (; rest >= frame_time && a->left > 0; rest -= frame_time) step_transition(a);
+    a->rest_ns = a->left > 0 ? (uint32_t)rest : 0;
+}
+
+/* A difference a number of frames on: as many steps. */
+static pantin_offset after(const pantin_offset *o, uint8_t frames) {
+    pantin_offset to = *o;
+    int32_t n = frames, pairs = n * (n - 1) / 2, triples = pairs * (n - 2) / 3;
+    to.d = sum(sum(sum(o->d, times(n, o->v)), times(pairs, o->w)), times(triples, o->k));
+    to.v = sum(sum(o->v, times(n, o->w)), times(pairs, o->k));
+    to.w = sum(o->w, times(n, o->k));
+    return to;
+}
+
+/* While differences are carried, they are what they were when that began: brings them to this frame. */
+static void leave_carried(pantin_animator *a) {
     uint16_t c;
-    for (; rest >= frame_time && a->left > 0; rest -= frame_time) {
-        a->left--;
-        for (c = 0; c < a->channels; c++) {
-            pantin_offset *o = &a->memory->offsets[c];
-            if (o->d | o->v) step_offset(o);
+    for (c = 0; c < a->channels && a->carried; c++) a->memory->offsets[c] = after(&a->memory->offsets[c], a->carried_frames);
+    a->carried = 0;
+}
+
+/* Adds carried differences to the pose. Between frames a moving channel goes a part of the sum of the clip's velocity and the difference's, which is rounded
+   once. */
+static void add_carried(pantin_animator *a) {
+    const pantin_player *p = &a->track.player;
+    uint16_t c, m = 0, part = part_of(&a->track) >> 1;
+    for (c = 0; c < a->channels; c++) {
+        const pantin_offset *base = &a->memory->offsets[c];
+        pantin_offset o = after(base, a->carried_frames);
+        int32_t v = o.v;
+        if (m < p->moving_count && p->moving[m].channel == c) {
+            v = sum(v, (int32_t)p->moving[m++].v);
+        } else if (!(base->d | base->v)) {
+            continue;
         }
+        a->pose[c] = sum(a->pose[c], sum(o.d, weighted(v, part)));
+    }
+}
+
+/* Begins to carry differences. Returns 0 for a clip whose channels follow others, or which has keys. */
+static int carry(pantin_animator *a) {
+    const pantin_player *p = &a->track.player;
+    uint16_t m;
+    if (a->carried) return 1;
+    if (moving_count(p) != p->moving_count) return 0;
+    for (m = 0; m < p->moving_count; m++) {
+        if (p->moving[m].leader && p->moving[m].leader != 255) return 0;
+    }
+    for (m = 0; m < p->moving_count; m++) {
+        pantin_offset *o = &a->memory->offsets[p->moving[m].channel];
+        if (!(o->d | o->v)) memset(o, 0, sizeof *o);
+    }
+    a->carried = 1;
+    a->carried_frames = 0;
+    return 1;
+}
+
+/* Whether so many frames lead neither to the last frame nor past one where the cubics are solved. */
+static int may_carry(const pantin_animator *a, uint8_t frames) {
+    static const uint8_t again[3] = {2, 32, 128};
+    uint8_t i;
+    if (a->left <= 2 || a->left < frames) return 0;
+    for (i = 0; i < 3 && frames > 1; i++) {
+        if (a->left > again[i] && a->left - frames < again[i]) return 0;
+    }
+    return frame_of(&a->track) + frames + 1 < a->track.clip.frames;
+}
+
+/* Goes on by frames that clip and transition share, to a time after them. Returns 0, and no differences are carried, if they part. */
+static int run_carried(pantin_animator *a, int together, uint8_t frames, uint32_t rest_ns, passage *p, pantin_result *result) {
+    uint8_t i;
+    if (!together || !may_carry(a, frames) || !carry(a)) {
+        leave_carried(a);
+        return 0;
+    }
+    p->from = frame_of(&a->track);
+    p->from_rest = a->track.rest != 0;
+    for (i = 0; i < frames && *result == PANTIN_OK; i++) *result = pantin_step(&a->track.player);
+    a->carried_frames = (uint8_t)(a->carried_frames + frames);
+    a->left = (uint8_t)(a->left - frames);
+    a->rest_ns = rest_ns;
+    a->track.rest = (int64_t)rest_ns << 16;
+    if (frames > 0 && (a->left == 2 || a->left == 32 || a->left == 128)) {
+        leave_carried(a);
         solve_again(a);
     }
-    a->rest_ns = a->left > 0 ? (uint32_t)rest : 0;
+    p->to = frame_of(&a->track);
+    p->to_rest = rest_ns != 0;
+    p->laps = 0;
+    p->forward = 1;
+    return 1;
+}
+
+/* Goes on by a time with carried differences: at speed 1, at most 8 frames. */
+static int play_carried(pantin_animator *a, uint64_t elapsed_ns, passage *p, pantin_result *result) {
+    uint64_t rest = a->rest_ns + elapsed_ns;
+    uint8_t frames = 0;
+    int together = a->left > 0 && a->track.speed == PANTIN_SPEED && a->track.rest == (int64_t)a->rest_ns << 16;
+    for (; together && rest >= a->track.clip.frame_time_ns; rest -= a->track.clip.frame_time_ns) together = ++frames <= 8;
+    return run_carried(a, together, frames, (uint32_t)rest, p, result);
 }
 
 /* Adds what the channels move after the frame, and takes the root's place out of the pose. */
 static void finish(pantin_animator *a) {
     uint8_t i;
-    add_part(&a->track, 1u << 15, a->pose);
+    if (!a->carried) add_part(&a->track, 1u << 15, a->pose);
     for (i = 0; i < 2; i++) {
         uint16_t channel = a->place_channels[i];
         if (channel == NO_CHANNEL) continue;
@@ -823,7 +945,9 @@ static void finish(pantin_animator *a) {
 static void compose(pantin_animator *a) {
     uint16_t c, part = 0;
     memcpy(a->pose, a->track.player.pose, a->channels * sizeof *a->pose);
-    if (a->left > 0) {
+    if (a->carried) {
+        add_carried(a);
+    } else if (a->left > 0) {
         if (a->rest_ns) part = (uint16_t)((uint16_t)(((uint64_t)a->rest_ns << 16) / a->track.clip.frame_time_ns) >> 1);
         for (c = 0; c < a->channels; c++) {
             const pantin_offset *o = &a->memory->offsets[c];
@@ -902,6 +1026,7 @@ static pantin_result open_carried(pantin_animator *a, const pantin_clip *clip, c
     if (result == PANTIN_OK) result = start_player(&a->track, memory->moving, memory->moving_room, memory->values, memory->channel_room);
     if (result != PANTIN_OK) return result;
     memset(memory->offsets, 0, a->channels * sizeof *memory->offsets);
+    keep_start(&a->track, a);
     events_forward(a, 0, 1);
     compose(a);
     new_travel(a, &nowhere);
@@ -933,10 +1058,16 @@ static void pass(pantin_animator *a, const passage *p) {
 /* Lets time pass up to the end of a clip that is no loop. */
 static pantin_result play(pantin_animator *a, uint64_t elapsed_ns, uint64_t *left_ns) {
     passage p;
-    pantin_result result = advance(&a->track, a, elapsed_ns, &p, left_ns);
+    pantin_result result = PANTIN_OK;
+    uint8_t carried = (uint8_t)play_carried(a, elapsed_ns, &p, &result);
+    if (carried) {
+        *left_ns = 0;
+    } else {
+        result = advance(&a->track, a, elapsed_ns, &p, left_ns);
+    }
     if (result != PANTIN_OK) return result;
     pass(a, &p);
-    run_transition(a, elapsed_ns > *left_ns ? elapsed_ns - *left_ns : 0);
+    if (!carried) run_transition(a, elapsed_ns > *left_ns ? elapsed_ns - *left_ns : 0);
     compose(a);
     locate(a);
     return PANTIN_OK;
@@ -945,6 +1076,7 @@ static pantin_result play(pantin_animator *a, uint64_t elapsed_ns, uint64_t *lef
 /* Lets time pass after the end of the clip: a transition still runs. */
 static void hold(pantin_animator *a, uint64_t elapsed_ns) {
     if (a->left == 0 || elapsed_ns == 0) return;
+    leave_carried(a);
     run_transition(a, elapsed_ns);
     compose(a);
     locate(a);
@@ -959,29 +1091,25 @@ pantin_result pantin_animator_update(pantin_animator *a, uint32_t elapsed_us) {
 
 pantin_result pantin_animator_step(pantin_animator *a) {
     passage p;
-    uint16_t c;
-    pantin_result result = a->memory ? step_track(&a->track, a, &p) : PANTIN_ERROR_HEAD;
+    pantin_result result = a->memory ? PANTIN_OK : PANTIN_ERROR_HEAD;
+    if (result != PANTIN_OK) return result;
+    if (!run_carried(a, a->left > 0, 1, 0, &p, &result)) {
+        result = step_track(&a->track, a, &p);
+        a->rest_ns = 0;
+        if (a->left > 0) step_transition(a);
+    }
     if (result != PANTIN_OK) return result;
     pass(a, &p);
-    a->rest_ns = 0;
-    if (a->left > 0) {
-        a->left--;
-        for (c = 0; c < a->channels; c++) {
-            pantin_offset *o = &a->memory->offsets[c];
-            step_offset(o);
-            a->pose[c] = sum(a->track.player.pose[c], o->d);
-        }
-        finish(a);
-        solve_again(a);
-    } else {
-        compose(a);
-    }
+    compose(a);
     locate(a);
     return PANTIN_OK;
 }
 
 pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
-    pantin_result result = a->memory ? seek_track(&a->track, frame) : PANTIN_ERROR_HEAD;
+    pantin_result result = a->memory ? PANTIN_OK : PANTIN_ERROR_HEAD;
+    if (result != PANTIN_OK) return result;
+    leave_carried(a);
+    result = seek_track(&a->track, frame);
     if (result != PANTIN_OK) return result;
     compose(a);
     locate(a);
@@ -1151,6 +1279,7 @@ pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip
     if (!a->memory) return PANTIN_ERROR_HEAD;
     if (old.rig.id != clip->rig.id) return PANTIN_ERROR_OTHER_RIG;
     if (kind == PANTIN_CUT) frames = 0;
+    leave_carried(a);
     yaw = yaw_of(a, a->pose);
     take_motion(a, clip);
     result = start_track(&a->track, clip, a->channels, frame, speed);

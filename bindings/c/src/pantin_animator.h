@@ -92,6 +92,7 @@ typedef struct pantin_track {
     pantin_seam seam;
     uint8_t ended;  /* 1 once a clip that is no loop was played past its end */
     uint8_t closed; /* 1: the velocities lead from the last frame of a loop to frame 0 */
+    uint8_t lapped; /* 1 once a loop has begun while no transition ran */
 } pantin_track;
 
 /* An angle with its sine and cosine in Q30. */
@@ -110,6 +111,8 @@ typedef struct pantin_animator {
     uint16_t group_count, channels;
     uint16_t carrier;           /* index of the joint that carries the figure */
     uint8_t left;               /* frames of the transition that are left */
+    uint8_t carried;            /* 1 while differences and clip move as one, and how many frames they have done so */
+    uint8_t carried_frames;
     uint8_t event_count;
     pantin_fired events[PANTIN_EVENTS]; /* the oldest first */
     pantin_joint_ref root;
