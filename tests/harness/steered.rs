@@ -103,7 +103,7 @@ pub fn bank_with_feet() -> Result<Vec<u8>> {
     let file = Text { name: "character.toml", text: &text };
     let made = make(&Source::parse(&file)?, &file, &pantin::Bank::new_checked(&bytes)?)?;
     let whole = pantin_convert::bank::with_section(&bytes, SECTION, &made.table)?;
-    Ok(pantin_convert::bank::with_section(&whole, FEET_SECTION, &made.feet.context("a machine without feet")?)?)
+    pantin_convert::bank::with_section(&whole, FEET_SECTION, &made.feet.context("a machine without feet")?)
 }
 
 /// Plays the session on a machine with the character of a bank, in step with the host, and compares each picture with what the same program shows here;

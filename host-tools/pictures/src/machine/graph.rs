@@ -158,7 +158,7 @@ fn nodes(source: &Source) -> Vec<Node> {
     let width = |(name, clip): &(String, String)| name.chars().count().max(clip.chars().count()) as f64 * LETTER + 24.0;
     let widest = named.iter().map(width).fold(80.0, f64::max);
     // The first at the top, down on the right, up on the left; an even number has one at the bottom.
-    let (rows, even) = ((count - 1) / 2, count % 2 == 0);
+    let (rows, even) = ((count - 1) / 2, count.is_multiple_of(2));
     let last = if even { rows + 1 } else { rows };
     let place = |index: usize| {
         let (side, row) = match index {
