@@ -61,13 +61,6 @@ typedef struct pantin_animator_memory {
     size_t group_room;
 } pantin_animator_memory;
 
-/* Where a figure is: the horizontal axes that follow the vertical one in the cycle x, y, z (for y up: z, x), in 2^clip.exponent units of the source, and
- * how far it is turned about the vertical axis in 2^-32 turns, beyond what its pose says. */
-typedef struct pantin_placement {
-    int64_t place[2];
-    int32_t heading;
-} pantin_placement;
-
 /* An event marker that was passed: its id in its clip and its frame. */
 typedef struct pantin_fired {
     uint32_t id, frame;
@@ -93,6 +86,7 @@ typedef struct pantin_track {
     uint8_t ended;  /* 1 once a clip that is no loop was played past its end */
     uint8_t closed; /* 1: the velocities lead from the last frame of a loop to frame 0 */
     uint8_t lapped; /* 1 once a loop has begun while no transition ran */
+    uint8_t stale;  /* 1 after a failed read: the next call starts the player again at its frame */
 } pantin_track;
 
 /* An angle with its sine and cosine in Q30. */
@@ -114,6 +108,7 @@ typedef struct pantin_animator {
     uint8_t carried;            /* 1 while differences and clip move as one, and how many frames they have done so */
     uint8_t carried_frames;
     uint8_t event_count;
+    uint8_t stepped;            /* 1 once a call has changed the differences of a transition */
     pantin_fired events[PANTIN_EVENTS]; /* the oldest first */
     pantin_joint_ref root;
     pantin_group turns;         /* the channels that turn the root */
