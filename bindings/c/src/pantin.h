@@ -7,12 +7,12 @@
  *     pantin_source source;
  *     pantin_clip clip;
  *     pantin_player player;
- *     pantin_channel moving[20];
+ *     pantin_channel moving[21];
  *     int32_t pose[22];
  *
  *     pantin_memory(&source, walk, sizeof walk);
  *     if (pantin_open(&clip, &source, NULL) == PANTIN_OK &&
- *         pantin_start(&player, &clip, pose, 22, moving, 20) == PANTIN_OK) {
+ *         pantin_start(&player, &clip, pose, 22, moving, 21) == PANTIN_OK) {
  *         do { show(pose); } while (pantin_step(&player) == PANTIN_OK);
  *     }
  *
@@ -52,7 +52,7 @@ typedef enum pantin_result {
     PANTIN_ERROR_RIG,      /* a value of the rig is out of its bounds */
     PANTIN_ERROR_NO_RIG,   /* the clip has no rig and none was supplied */
     PANTIN_ERROR_OTHER_RIG, /* the clip is of another rig than the one supplied */
-    PANTIN_ERROR_HEAD,     /* a value of the motion's head is out of its bounds */
+    PANTIN_ERROR_HEAD,     /* a value of the motion's head is out of its bounds; or what was passed has not been opened or set up */
     PANTIN_ERROR_BANK,     /* the sections of a bank contradict each other */
     PANTIN_ERROR_MACHINE,  /* the table of a state machine contradicts itself or the bank */
     PANTIN_UNSUPPORTED     /* the bank has what this function cannot play: pantin_animator.h lists it */
