@@ -139,7 +139,10 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
         same("damaged characters", &expected, &String::from_utf8(output(command)?.stdout)?)?;
     }
     let refused = expected.lines().filter(|line| *line == "refused").count();
-    println!("   {} clips, {people} people, {pictures} poses, {stands} of them also somewhere in the world, {MUTANTS} damaged characters ({refused} refused)", cases.len());
+    println!(
+        "   {} clips, {people} people, {pictures} poses, {stands} of them also somewhere in the world, {MUTANTS} damaged characters ({refused} refused)",
+        cases.len()
+    );
     ensure!(people > 40 && stands > 1000, "few people or stands");
     Ok(())
 }
