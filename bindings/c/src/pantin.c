@@ -33,7 +33,10 @@ static uint8_t byte_at(pantin_source *s, uint32_t position) {
     uint32_t i = position - s->window_start;
     if (i >= s->window_length) {
         pantin_result result = PANTIN_ERROR_READ;
-        if (s->load) result = s->load(s, position);
+        if (s->load) {
+            result = s->load(s, position);
+            if (s->failed == PANTIN_OK) s->failed = result;
+        }
         i = position - s->window_start;
         if (result != PANTIN_OK || i >= s->window_length) {
             fail(s, result != PANTIN_OK ? result : PANTIN_ERROR_READ);
@@ -194,6 +197,7 @@ uint32_t pantin_copy_name(const pantin_name *name, char *into, size_t room) {
 
 int pantin_name_is(const pantin_name *name, const char *text) {
     uint32_t i;
+    if (!text) return 0;
     for (i = 0; i < name->length; i++) {
         if (text[i] == 0 || (uint8_t)text[i] != pantin_name_byte(name, i)) return 0;
     }

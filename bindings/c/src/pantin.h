@@ -7,12 +7,12 @@
  *     pantin_source source;
  *     pantin_clip clip;
  *     pantin_player player;
- *     pantin_channel moving[20];
+ *     pantin_channel moving[21];
  *     int32_t pose[22];
  *
  *     pantin_memory(&source, walk, sizeof walk);
  *     if (pantin_open(&clip, &source, NULL) == PANTIN_OK &&
- *         pantin_start(&player, &clip, pose, 22, moving, 20) == PANTIN_OK) {
+ *         pantin_start(&player, &clip, pose, 22, moving, 21) == PANTIN_OK) {
  *         do { show(pose); } while (pantin_step(&player) == PANTIN_OK);
  *     }
  *
@@ -21,6 +21,9 @@
  *
  * A structure that is lent must not be moved or changed while another one refers to it: a clip refers to its source, a player to its clip,
  * pose and moving channels. Fields of structures may be read; only the functions change them.
+ *
+ * Pointers must not be NULL unless a comment says that they may be, and a structure must have been opened before another function takes it. A
+ * name that is NULL is the name of nothing: functions that look for it do not find it.
  */
 #ifndef PANTIN_H
 #define PANTIN_H
@@ -49,7 +52,7 @@ typedef enum pantin_result {
     PANTIN_ERROR_RIG,      /* a value of the rig is out of its bounds */
     PANTIN_ERROR_NO_RIG,   /* the clip has no rig and none was supplied */
     PANTIN_ERROR_OTHER_RIG, /* the clip is of another rig than the one supplied */
-    PANTIN_ERROR_HEAD,     /* a value of the motion's head is out of its bounds */
+    PANTIN_ERROR_HEAD,     /* a value of the motion's head is out of its bounds; or what was passed has not been opened or set up */
     PANTIN_ERROR_BANK,     /* the sections of a bank contradict each other */
     PANTIN_ERROR_MACHINE,  /* the table of a state machine contradicts itself or the bank */
     PANTIN_UNSUPPORTED     /* the bank has what this function cannot play: pantin_animator.h lists it */
@@ -79,6 +82,7 @@ struct pantin_source {
     pantin_result (*load)(pantin_source *source, uint32_t position);
     uint32_t done;          /* a player no longer needs the bytes of the motion before this position */
     pantin_result error;    /* the first error since the last call began */
+    pantin_result failed;   /* the first result of `load` that was not PANTIN_OK since somebody cleared this */
 };
 
 /* A source whose `length` bytes are all in memory (on AVR: in RAM). */
@@ -190,6 +194,14 @@ int pantin_next_scalar(pantin_scalar *scalar);
 
 /* Finds a scalar by name. Returns 1, or 0 if there is none. */
 int pantin_find_scalar(const pantin_rig *rig, const char *name, pantin_scalar *scalar);
+
+/* Where a figure stands beyond what its pose says, as an animator finds it. `place` is in 2^clip.exponent units of the source, which are
+ * clip.rig.unit_micro_cm * 10^-6 cm each, along the two horizontal axes: z and x for y up, x and y for z up, y and z for x up. `heading` is the turn about
+ * the vertical axis, in 2^-32 turns. */
+typedef struct pantin_placement {
+    int64_t place[2];
+    int32_t heading;
+} pantin_placement;
 
 /* ---- Clip --------------------------------------------------------------------------------------------------------------------------- */
 

@@ -22,6 +22,8 @@
 #define FAR_TURN 0x20000000u
 
 enum { FREE = 0, EULER, MAP, QUATERNION };
+/* Why a track is stale: its player has to be started again, and a transition has ended by that. */
+enum { STALE = 1, STALE_AND_ENDED };
 
 /* ---- Numbers ---- */
 
@@ -372,7 +374,10 @@ static uint16_t moving_count(const pantin_player *p) {
 }
 
 /* How far this instant is on the way from its frame to the next, in 2^-16. */
-static uint16_t part_of(const pantin_track *t) { return t->rest ? (uint16_t)(t->rest / (int64_t)t->clip.frame_time_ns) : 0; }
+static uint16_t part_of(const pantin_track *t) {
+    if (t->rest == 0) return 0;
+    return (uint16_t)(t->rest / (int64_t)t->clip.frame_time_ns);
+}
 
 static pantin_result go_to(pantin_track *t, uint32_t frame) {
     uint32_t ahead;
@@ -817,6 +822,7 @@ static void step_offset(pantin_offset *o) {
 static void step_transition(pantin_animator *a) {
     uint16_t c;
     a->left--;
+    a->stepped = 1;
     for (c = 0; c < a->channels; c++) {
         pantin_offset *o = &a->memory->offsets[c];
         if (o->d | o->v) step_offset(o);
@@ -844,6 +850,7 @@ static pantin_offset after(const pantin_offset *o, uint8_t frames) {
 /* While differences are carried, they are what they were when that began: brings them to this frame. */
 static void leave_carried(pantin_animator *a) {
     uint16_t c;
+    if (a->carried) a->stepped = 1;
     for (c = 0; c < a->channels && a->carried; c++) a->memory->offsets[c] = after(&a->memory->offsets[c], a->carried_frames);
     a->carried = 0;
 }
@@ -905,6 +912,7 @@ static int run_carried(pantin_animator *a, int together, uint8_t frames, uint32_
     p->from = frame_of(&a->track);
     p->from_rest = a->track.rest != 0;
     for (i = 0; i < frames && *result == PANTIN_OK; i++) *result = pantin_step(&a->track.player);
+    if (*result != PANTIN_OK) return 1;
     a->carried_frames = (uint8_t)(a->carried_frames + frames);
     a->left = (uint8_t)(a->left - frames);
     a->rest_ns = rest_ns;
@@ -1033,14 +1041,94 @@ static pantin_result open_carried(pantin_animator *a, const pantin_clip *clip, c
     return PANTIN_OK;
 }
 
-pantin_result pantin_animator_open_carried(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
-    pantin_result result = open_carried(a, clip, memory, carrier);
+/* ---- Reads that fail ---- */
+
+/* Functions of the decoder that return no result, or begin with a source without errors, hide that bytes before them could not be read. The source knows. */
+static void begin_reads(const pantin_clip *clip) { clip->source->failed = clip->rig.source->failed = PANTIN_OK; }
+
+static pantin_result reads_of(const pantin_clip *clip, pantin_result result) {
+    if (clip->source->failed != PANTIN_OK) return clip->source->failed;
+    return clip->rig.source->failed != PANTIN_OK ? clip->rig.source->failed : result;
+}
+
+/* Starts the player of a track again at its frame. */
+static pantin_result start_again(pantin_track *t, pantin_animator *a, uint16_t channels) {
+    uint32_t frame = frame_of(t);
+    uint8_t closed = t->closed;
+    pantin_result result = start_player(t, t->player.moving, t->player.moving_room, t->player.pose, channels);
+    if (result == PANTIN_OK) result = go_to(t, frame);
+    t->closed = 0;
+    if (result == PANTIN_OK && closed) result = close_loop(t, a);
+    result = reads_of(&t->clip, result);
+    if (result == PANTIN_OK) return PANTIN_OK;
+    /* It cannot play, but its frame is still the one to go to. */
+    t->player.frame = frame;
+    t->player.started = 0;
+    t->closed = closed;
+    return result;
+}
+
+/* Makes an animator one again whose player, groups and root were read in part. */
+static pantin_result recover(pantin_animator *a) {
+    pantin_result result;
+    if (!a->track.stale) return PANTIN_OK;
+    begin_reads(&a->track.clip);
+    result = find_groups(a, &a->track.clip);
+    if (result == PANTIN_OK) result = find_root(a);
+    result = reads_of(&a->track.clip, result);
+    if (result == PANTIN_OK) result = start_again(&a->track, a, a->channels);
+    if (result != PANTIN_OK) return result;
+    compose(a);
+    /* The figure stays where it is without what the transition added to its way. */
+    if (a->track.stale == STALE_AND_ENDED) new_travel(a, &a->placement);
+    a->track.stale = 0;
+    return PANTIN_OK;
+}
+
+/* Takes everything back but a transition whose differences have changed: that one ends. */
+static void take_back(pantin_animator *a, const pantin_animator *before, uint8_t stepped) {
+    *a = *before;
+    a->track.stale = STALE;
+    if (!stepped || a->left == 0) return;
+    a->track.stale = STALE_AND_ENDED;
+    a->left = a->carried = 0;
+    a->rest_ns = 0;
+}
+
+/* Begins a call that a failed read can end: `before` keeps what is taken back then. */
+static pantin_result begin_call(pantin_animator *a, pantin_animator *before) {
+    pantin_result result = a->memory ? recover(a) : PANTIN_ERROR_HEAD;
+    if (result != PANTIN_OK) return result;
+    begin_reads(&a->track.clip);
+    a->stepped = 0;
+    *before = *a;
+    return PANTIN_OK;
+}
+
+static pantin_result end_call(pantin_animator *a, const pantin_animator *before, pantin_result result) {
+    pantin_result read = reads_of(&before->track.clip, PANTIN_OK);
+    if (read == PANTIN_OK) return result;
+    take_back(a, before, a->stepped);
+    (void)recover(a);
+    return read;
+}
+
+/* ---- Opening, and time ---- */
+
+static pantin_result open_read(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
+    pantin_result result = reads_of(clip, open_carried(a, clip, memory, carrier));
     if (result != PANTIN_OK) memset(a, 0, sizeof *a);
     return result;
 }
 
+pantin_result pantin_animator_open_carried(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
+    begin_reads(clip);
+    return open_read(a, clip, memory, carrier);
+}
+
 pantin_result pantin_animator_open(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory) {
-    return pantin_animator_open_carried(a, clip, memory, first_with_positions(&clip->rig));
+    begin_reads(clip);
+    return open_read(a, clip, memory, first_with_positions(&clip->rig));
 }
 
 void pantin_animator_speed(pantin_animator *a, int32_t speed) { set_speed(&a->track, speed); }
@@ -1083,37 +1171,44 @@ static void hold(pantin_animator *a, uint64_t elapsed_ns) {
 }
 
 pantin_result pantin_animator_update(pantin_animator *a, uint32_t elapsed_us) {
+    pantin_animator before;
     uint64_t left_ns;
-    pantin_result result = a->memory ? play(a, (uint64_t)elapsed_us * 1000, &left_ns) : PANTIN_ERROR_HEAD;
+    pantin_result result = begin_call(a, &before);
+    if (result != PANTIN_OK) return result;
+    result = play(a, (uint64_t)elapsed_us * 1000, &left_ns);
     if (result == PANTIN_OK) hold(a, left_ns);
-    return result;
+    return end_call(a, &before, result);
 }
 
 pantin_result pantin_animator_step(pantin_animator *a) {
+    pantin_animator before;
     passage p;
-    pantin_result result = a->memory ? PANTIN_OK : PANTIN_ERROR_HEAD;
+    pantin_result result = begin_call(a, &before);
     if (result != PANTIN_OK) return result;
     if (!run_carried(a, a->left > 0, 1, 0, &p, &result)) {
         result = step_track(&a->track, a, &p);
         a->rest_ns = 0;
         if (a->left > 0) step_transition(a);
     }
-    if (result != PANTIN_OK) return result;
-    pass(a, &p);
-    compose(a);
-    locate(a);
-    return PANTIN_OK;
+    if (result == PANTIN_OK) {
+        pass(a, &p);
+        compose(a);
+        locate(a);
+    }
+    return end_call(a, &before, result);
 }
 
 pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
-    pantin_result result = a->memory ? PANTIN_OK : PANTIN_ERROR_HEAD;
+    pantin_animator before;
+    pantin_result result = begin_call(a, &before);
     if (result != PANTIN_OK) return result;
     leave_carried(a);
     result = seek_track(&a->track, frame);
-    if (result != PANTIN_OK) return result;
-    compose(a);
-    locate(a);
-    return PANTIN_OK;
+    if (result == PANTIN_OK) {
+        compose(a);
+        locate(a);
+    }
+    return end_call(a, &before, result);
 }
 
 /* ---- Going over to another clip ---- */
@@ -1129,6 +1224,7 @@ static void take_motion(pantin_animator *a, const pantin_clip *clip) {
     int64_t ratio = (int64_t)(((uint64_t)clip->frame_time_ns << 16) / a->track.clip.frame_time_ns), speed;
     uint16_t c, count = moving_of(&a->track);
     ratio = clamp(ratio, 0, 1L << 30);
+    a->stepped = 1;
     for (c = 0; c < a->channels; c++) {
         pantin_offset *o = &a->memory->offsets[c];
         int32_t own = a->left > 0 ? scaled(o->v, ratio) : 0;
@@ -1270,13 +1366,12 @@ static pantin_result convert(pantin_animator *a, const pantin_clip *old) {
     return find_root(a);
 }
 
-pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind, uint8_t frames) {
+static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind, uint8_t frames) {
     pantin_clip old = a->track.clip;
     pantin_placement now = a->placement;
     int32_t yaw, turned;
     uint8_t i;
     pantin_result result;
-    if (!a->memory) return PANTIN_ERROR_HEAD;
     if (old.rig.id != clip->rig.id) return PANTIN_ERROR_OTHER_RIG;
     if (kind == PANTIN_CUT) frames = 0;
     leave_carried(a);
@@ -1304,6 +1399,19 @@ pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip
     new_travel(a, &now);
     locate(a);
     return PANTIN_OK;
+}
+
+pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind, uint8_t frames) {
+    pantin_animator before;
+    pantin_result result = begin_call(a, &before);
+    if (result != PANTIN_OK) return result;
+    begin_reads(clip);
+    result = go_over(a, clip, frame, speed, kind, frames);
+    if (reads_of(clip, PANTIN_OK) == PANTIN_OK) return end_call(a, &before, result);
+    result = reads_of(clip, PANTIN_OK);
+    take_back(a, &before, a->stepped);
+    (void)recover(a);
+    return result;
 }
 
 /* ---- Phases of a gait ---- */
@@ -1434,7 +1542,9 @@ static uint8_t find_name(const pantin_character *c, uint32_t before, uint8_t cou
     uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
     uint8_t index;
     pantin_name own;
+    if (!name || !count) return PANTIN_NO_INPUT;
     own.source = c->bank.source;
+    own.source->failed = PANTIN_OK;
     for (; at < c->table_end; at += 1 + own.length) {
         own.length = pantin_byte(own.source, at);
         own.start = at + 1;
@@ -1445,7 +1555,7 @@ static uint8_t find_name(const pantin_character *c, uint32_t before, uint8_t cou
         for (index = 0; index < count && at < c->table_end; index++) {
             own.length = pantin_byte(own.source, at);
             own.start = at + 1;
-            if (pantin_name_is(&own, name)) return index;
+            if (own.source->failed == PANTIN_OK && pantin_name_is(&own, name)) return index;
             at += 1 + own.length;
         }
         break;
@@ -1658,7 +1768,7 @@ static pantin_result open_character(pantin_character *c, pantin_source *source, 
     c->state = c->counts[FIRST_STATE];
     read_state(c, c->state, &row);
     result = open_clip(c, row.clip, &first);
-    if (result == PANTIN_OK) result = pantin_animator_open_carried(&c->animator, &first, memory, carrier);
+    if (result == PANTIN_OK) result = open_carried(&c->animator, &first, memory, carrier);
     if (result != PANTIN_OK) return result;
     set_speed(&c->animator.track, row.speed);
     frame = begun(0, &first, row.speed);
@@ -1670,7 +1780,10 @@ static pantin_result open_character(pantin_character *c, pantin_source *source, 
 }
 
 pantin_result pantin_character_open(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
-    pantin_result result = open_character(c, source, memory, without);
+    pantin_result result;
+    source->failed = PANTIN_OK;
+    result = open_character(c, source, memory, without);
+    if (source->failed != PANTIN_OK) result = source->failed;
     if (result != PANTIN_OK) memset(c, 0, sizeof *c);
     return result;
 }
@@ -1682,9 +1795,11 @@ pantin_result pantin_character_second(pantin_character *c, pantin_track *track, 
     if (!c->bank.source) return PANTIN_ERROR_HEAD;
     memset(track, 0, sizeof *track);
     track->speed = PANTIN_SPEED;
+    c->bank.source->failed = PANTIN_OK;
     read_state(c, c->state, &row);
     result = open_clip(c, row.clip, &track->clip);
     if (result == PANTIN_OK) result = start_player(track, moving, moving_room, values, value_room);
+    if (c->bank.source->failed != PANTIN_OK) result = c->bank.source->failed;
     if (result == PANTIN_OK) c->second = track;
     return result;
 }
@@ -1706,9 +1821,12 @@ void pantin_character_hold(pantin_character *c, uint8_t input, int down) {
 }
 
 void pantin_character_set(pantin_character *c, uint8_t parameter, int16_t value) {
+    int16_t low, high;
     if (parameter >= c->counts[PARAMETERS]) return;
-    c->parameters[parameter] =
-        (int16_t)clamp(value, table_number(c, parameter_at(c, parameter)), table_number(c, parameter_at(c, parameter) + 2));
+    c->bank.source->failed = PANTIN_OK;
+    low = table_number(c, parameter_at(c, parameter));
+    high = table_number(c, parameter_at(c, parameter) + 2);
+    if (c->bank.source->failed == PANTIN_OK) c->parameters[parameter] = (int16_t)clamp(value, low, high);
 }
 
 /* ---- Blends ---- */
@@ -1744,6 +1862,8 @@ static pantin_result mix(pantin_animator *a, const pantin_track *other, uint16_t
 /* How much of the second clip a parameter mixes in. */
 static uint16_t weight_of(const pantin_character *c, uint8_t parameter) {
     int32_t low = table_number(c, parameter_at(c, parameter)), high = table_number(c, parameter_at(c, parameter) + 2);
+    /* So that bytes that cannot be read divide nothing by 0. */
+    if (high <= low) return 0;
     return (uint16_t)clamp((int64_t)(c->parameters[parameter] - low) * 32768 / (high - low), 0, 1 << 15);
 }
 
@@ -1831,7 +1951,7 @@ static pantin_result make(pantin_character *c, uint32_t at) {
         int64_t instant = in_step(&a->track, &clip, 0);
         frame = instant < 0 ? 0 : (uint32_t)(instant >> 16);
     }
-    result = pantin_animator_switch(a, &clip, begun(frame, &clip, row.speed), row.speed, (pantin_transition)table_byte(c, at + 5), table_byte(c, at + 6));
+    result = go_over(a, &clip, begun(frame, &clip, row.speed), row.speed, (pantin_transition)table_byte(c, at + 5), table_byte(c, at + 6));
     if (result != PANTIN_OK) return result;
     c->state = to;
     c->blending = 0;
@@ -1985,6 +2105,7 @@ pantin_result pantin_character_layer(pantin_character *c, pantin_layer *layer, p
     uint32_t at = layer_at(c, index), needed = ((uint32_t)c->bank.rig.joints + c->bank.rig.scalars + 31) / 32;
     pantin_result result;
     if (index >= c->counts[LAYERS]) return PANTIN_NOT_FOUND;
+    c->bank.source->failed = PANTIN_OK;
     memset(layer, 0, sizeof *layer);
     layer->clip = table_byte(c, at);
     layer->input = table_byte(c, at + 1);
@@ -1998,6 +2119,7 @@ pantin_result pantin_character_layer(pantin_character *c, pantin_layer *layer, p
     result = open_clip(c, layer->clip, &layer->track.clip);
     if (result == PANTIN_OK) result = find_mask(c, index, words);
     if (result == PANTIN_OK) result = start_player(&layer->track, moving, moving_room, values, channel_room);
+    if (c->bank.source->failed != PANTIN_OK) result = c->bank.source->failed;
     if (result == PANTIN_OK) c->layers[c->layer_count++] = layer;
     return result;
 }
@@ -2075,11 +2197,99 @@ static pantin_result update_layer(pantin_character *c, pantin_layer *l, uint32_t
     return put_over(&c->animator, l);
 }
 
-pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) {
+/* ---- An update ---- */
+
+/* What an update changes in a layer. */
+typedef struct {
+    int64_t rest;
+    uint32_t frame, left_us;
+    uint16_t weight, to;
+    uint8_t doing, ended, closed;
+} kept_layer;
+
+static void keep_layer(const pantin_layer *l, kept_layer *to) {
+    to->rest = l->track.rest;
+    to->frame = frame_of(&l->track);
+    to->left_us = l->left_us;
+    to->weight = l->weight;
+    to->to = l->to;
+    to->doing = l->doing;
+    to->ended = l->track.ended;
+    to->closed = l->track.closed;
+}
+
+static void take_layer_back(pantin_layer *l, const kept_layer *from) {
+    l->track.rest = from->rest;
+    l->track.player.frame = from->frame;
+    l->left_us = from->left_us;
+    l->weight = from->weight;
+    l->to = from->to;
+    l->doing = from->doing;
+    l->track.ended = from->ended;
+    l->track.closed = from->closed;
+}
+
+/* Starts the second clip again, at its frame. */
+static pantin_result start_second_again(pantin_character *c) {
+    pantin_track *own = &c->animator.track;
+    int32_t speed = own->speed;
+    uint8_t ended = own->ended;
+    uint32_t frame = frame_of(c->second);
+    pantin_clip clip;
+    state_row row;
     pantin_result result;
+    read_state(c, c->state, &row);
+    result = open_clip(c, row.other, &clip);
+    if (result == PANTIN_OK) result = start_track(c->second, &clip, c->animator.channels, frame, row.speed);
+    if (result == PANTIN_OK) result = blend(c);
+    /* Both are those of the update before until this one ends. */
+    own->speed = speed;
+    own->ended = ended;
+    if (c->bank.source->failed != PANTIN_OK) result = c->bank.source->failed;
+    if (result != PANTIN_OK) c->second->player.frame = frame;
+    return result;
+}
+
+/* Makes a character one again whose players were read in part. */
+static pantin_result recover_all(pantin_character *c) {
+    pantin_result result = recover(&c->animator);
+    uint8_t i;
+    if (result == PANTIN_OK && c->blending) result = start_second_again(c);
+    for (i = 0; result == PANTIN_OK && i < c->layer_count; i++) {
+        pantin_layer *l = c->layers[i];
+        if (l->doing == RESTS) continue;
+        result = start_again(&l->track, NULL, c->animator.channels);
+        if (result == PANTIN_OK) result = put_over(&c->animator, l);
+    }
+    if (result != PANTIN_OK && !c->animator.track.stale) c->animator.track.stale = STALE;
+    return result;
+}
+
+/* Takes an update back: a transition of clips whose differences have changed ends. */
+static void take_back_all(pantin_character *c, const pantin_character *before, const kept_layer *layers, uint32_t frame) {
+    uint8_t stepped = c->animator.stepped, i;
+    *c = *before;
+    take_back(&c->animator, &before->animator, stepped);
+    for (i = 0; i < c->layer_count; i++) take_layer_back(c->layers[i], &layers[i]);
+    if (c->second) c->second->player.frame = frame;
+    (void)recover_all(c);
+}
+
+pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) {
+    pantin_character before;
+    kept_layer layers[4];
+    pantin_result result = PANTIN_OK, read;
+    uint32_t frame;
     uint8_t i;
     if (!c->bank.source) return PANTIN_ERROR_HEAD;
     if (c->layer_count < c->counts[LAYERS] && !(c->without & PANTIN_WITHOUT_LAYERS)) return PANTIN_UNSUPPORTED;
+    c->bank.source->failed = PANTIN_OK;
+    if (c->animator.track.stale) result = recover_all(c);
+    if (result != PANTIN_OK) return result;
+    c->animator.stepped = 0;
+    before = *c;
+    frame = c->second ? frame_of(c->second) : 0;
+    for (i = 0; i < c->layer_count; i++) keep_layer(c->layers[i], &layers[i]);
     c->animator.event_count = 0;
     c->animator.lost = 0;
     c->entered = 0;
@@ -2088,5 +2298,8 @@ pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) 
     c->fired = 0;
     c->held_before = c->held;
     for (i = 0; result == PANTIN_OK && i < c->layer_count; i++) result = update_layer(c, c->layers[i], elapsed_us);
-    return result;
+    read = c->bank.source->failed;
+    if (read == PANTIN_OK) return result;
+    take_back_all(c, &before, layers, frame);
+    return read;
 }

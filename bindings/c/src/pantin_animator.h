@@ -61,13 +61,6 @@ typedef struct pantin_animator_memory {
     size_t group_room;
 } pantin_animator_memory;
 
-/* Where a figure is: the horizontal axes that follow the vertical one in the cycle x, y, z (for y up: z, x), in 2^clip.exponent units of the source, and
- * how far it is turned about the vertical axis in 2^-32 turns, beyond what its pose says. */
-typedef struct pantin_placement {
-    int64_t place[2];
-    int32_t heading;
-} pantin_placement;
-
 /* An event marker that was passed: its id in its clip and its frame. */
 typedef struct pantin_fired {
     uint32_t id, frame;
@@ -93,6 +86,7 @@ typedef struct pantin_track {
     uint8_t ended;  /* 1 once a clip that is no loop was played past its end */
     uint8_t closed; /* 1: the velocities lead from the last frame of a loop to frame 0 */
     uint8_t lapped; /* 1 once a loop has begun while no transition ran */
+    uint8_t stale;  /* 1 after a failed read: the next call starts the player again at its frame */
 } pantin_track;
 
 /* An angle with its sine and cosine in Q30. */
@@ -111,9 +105,10 @@ typedef struct pantin_animator {
     uint16_t group_count, channels;
     uint16_t carrier;           /* index of the joint that carries the figure */
     uint8_t left;               /* frames of the transition that are left */
-    uint8_t carried;            /* 1 while differences and clip move as one, and how many frames they have done so */
+    uint8_t carried;            /* 1 while a transition advances by whole frames together with the clip, and by how many it has */
     uint8_t carried_frames;
     uint8_t event_count;
+    uint8_t stepped;            /* 1 once a call has changed the differences of a transition */
     pantin_fired events[PANTIN_EVENTS]; /* the oldest first */
     pantin_joint_ref root;
     pantin_group turns;         /* the channels that turn the root */
@@ -133,11 +128,12 @@ pantin_result pantin_animator_open(pantin_animator *animator, const pantin_clip 
 pantin_result pantin_animator_open_carried(pantin_animator *animator, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier);
 
 /* Goes over to a clip of the same rig from a frame (from the last one if there are fewer) at a speed, in `frames` frames of the new clip. On an error the
- * old clip plays on, and a transition that ran has ended. */
+ * old clip plays on, and a transition that ran has ended: a read that fails ends it only if it had gone on in the call. */
 pantin_result pantin_animator_switch(pantin_animator *animator, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind,
                                      uint8_t frames);
 
-/* Lets time pass, up to 71 minutes. */
+/* Lets time pass, up to 71 minutes. A read that fails (PANTIN_ERROR_READ) takes this and the functions below back, and the call may be repeated; a
+ * transition that had gone on in it ends. If the frame before cannot be read again either, the pose is only valid after the next call that succeeds. */
 pantin_result pantin_animator_update(pantin_animator *animator, uint32_t elapsed_us);
 
 /* Goes on by exactly one frame of the clip, forwards and whatever its speed. */
@@ -206,7 +202,7 @@ pantin_result pantin_character_second(pantin_character *character, pantin_track 
 pantin_result pantin_character_layer(pantin_character *character, pantin_layer *layer, pantin_channel *moving, size_t moving_room, int32_t *values,
                                      int32_t *sampled, size_t channel_room, uint32_t *words, size_t word_room);
 
-/* Indices of an input, a parameter and a state by name; PANTIN_NO_INPUT if there is none. */
+/* Indices of an input, a parameter and a state by name; PANTIN_NO_INPUT if there is none, or if the names cannot be read. */
 uint8_t pantin_character_input(const pantin_character *character, const char *name);
 uint8_t pantin_character_parameter(const pantin_character *character, const char *name);
 uint8_t pantin_character_state(const pantin_character *character, const char *name);
@@ -215,11 +211,12 @@ uint8_t pantin_character_state(const pantin_character *character, const char *na
 void pantin_character_fire(pantin_character *character, uint8_t input);
 void pantin_character_hold(pantin_character *character, uint8_t input, int down);
 
-/* Sets a parameter, within its range. */
+/* Sets a parameter, within its range. It stays as it was if that cannot be read. */
 void pantin_character_set(pantin_character *character, uint8_t parameter, int16_t value);
 
 /* Lets time pass, then takes the transition whose condition holds. Events that were not taken are dropped first. On an error of a clip that cannot be
- * opened, or for which there is too little memory, the old state goes on. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers, and the
+ * opened, or for which there is too little memory, the old state goes on. A read that fails takes the whole update back, as in pantin_animator_update: state,
+ * inputs and events are those of before, and the update may be repeated. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers, and the
  * memory was neither lent nor declared absent. */
 pantin_result pantin_character_update(pantin_character *character, uint32_t elapsed_us);
 

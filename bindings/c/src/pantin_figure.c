@@ -8,13 +8,13 @@
 typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 
 #define FRACTION 15
-#define ONE 32768L
-#define HALF 16384L
+#define ONE ((int32_t)32768)
+#define HALF ((int32_t)16384)
 #define NONE 255u
 #define NO_FINGER 0xffffu
 #define ABSENT 7u
 #define DISTANCE 4
-#define TRIAL_SCALE 16384L
+#define TRIAL_SCALE ((int32_t)16384)
 #define SAMPLES 48u
 /* Of a clip with more bytes of motion, the camera is chosen by the first of equal parts that are no larger. */
 #define SURVEYED_BYTES 16384u
@@ -705,6 +705,7 @@ pantin_result pantin_figure_set_up(pantin_figure *f, pantin_player *player, uint
     pantin_result result = pantin_restart(player), restarted;
     table t;
     if (result != PANTIN_OK) return result;
+    if (width == 0 || height == 0 || width > 2047 || height > 2047) return PANTIN_NOT_FOUND;
     if (clip->rig.joints > scratch_room || clip->rig.joints > 255) return PANTIN_NO_ROOM;
     t.of = scratch;
     t.count = (uint8_t)clip->rig.joints;
@@ -799,7 +800,7 @@ static void keep_last(void *context, uint8_t index, const int32_t *position) {
     memcpy(context, position, 3 * sizeof *position);
 }
 
-static void place_hips(const pantin_figure *f, const int32_t *pose, int32_t *hips) {
+void pantin_figure_hips(const pantin_figure *f, const int32_t *pose, int32_t *hips) {
     int32_t view[3][3];
     memset(hips, 0, 3 * sizeof *hips);
     if (f->hips == 0 && f->bone_count > 0) {
@@ -841,12 +842,16 @@ void pantin_figure_see(void *context, uint8_t index, const int32_t *position) {
     bone->depth = narrow(project(f, position, bone->place));
 }
 
-void pantin_figure_values(pantin_figure *f, const int32_t *pose, pantin_figure_visit each, void *context) {
+void pantin_figure_follow(pantin_figure *f) {
     uint8_t axis;
-    place_hips(f, pose, f->target);
     for (axis = 0; axis < 3; axis++) {
         if (f->fixed_axes >> axis & 1) f->target[axis] = f->fixed[axis];
     }
+}
+
+void pantin_figure_values(pantin_figure *f, const int32_t *pose, pantin_figure_visit each, void *context) {
+    pantin_figure_hips(f, pose, f->target);
+    pantin_figure_follow(f);
     pantin_figure_place(f, pose, f->view, f->target, PANTIN_MAX_BONES + 1, each, context);
 }
 
@@ -1035,16 +1040,20 @@ static int32_t key(const pantin_figure *f, uint8_t index) {
     return ((int32_t)f->bones[bone->parent].depth + bone->depth) * 256 - index;
 }
 
-void pantin_figure_pose(pantin_figure *f, const int32_t *pose) {
+void pantin_figure_sort(pantin_figure *f) {
     uint8_t i, place, moving;
     int32_t own;
-    pantin_figure_values(f, pose, pantin_figure_see, f);
     for (i = 1; i < f->line_count; i++) {
         moving = f->bones[i].order;
         own = key(f, moving);
         for (place = i; place > 0 && key(f, f->bones[place - 1].order) < own; place--) f->bones[place].order = f->bones[place - 1].order;
         f->bones[place].order = moving;
     }
+}
+
+void pantin_figure_pose(pantin_figure *f, const int32_t *pose) {
+    pantin_figure_values(f, pose, pantin_figure_see, f);
+    pantin_figure_sort(f);
 }
 
 int pantin_figure_line(const pantin_figure *f, uint8_t index, pantin_line *line) {

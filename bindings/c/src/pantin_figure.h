@@ -129,7 +129,7 @@ void pantin_figure_memory(pantin_figure *figure, pantin_bone *bones, size_t bone
 
 /* Sets the figure up for a player's clip and a display of `width` times `height` pixels, each at most 2047. `scratch` lends an element for each
  * joint of the rig, at most 255, and is free again afterwards; it may be the player's memory for moving channels. Leaves the player at frame 0.
- * Returns PANTIN_NO_ROOM if the memory is too small, PANTIN_ERROR_RIG if a joint's channels cannot be drawn, or what reading the rig returned. */
+ * Returns PANTIN_NOT_FOUND for a width or height of 0 or above 2047, PANTIN_NO_ROOM if the memory is too small, PANTIN_ERROR_RIG if a joint's channels cannot be drawn, or what reading the rig returned. */
 pantin_result pantin_figure_set_up(pantin_figure *figure, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
                                    size_t scratch_room);
 

@@ -34,6 +34,13 @@ void pantin_figure_widen(pantin_extent *extent, const int16_t *place, int16_t ra
 void pantin_figure_values(pantin_figure *figure, const int32_t *pose, pantin_figure_visit each, void *context);
 void pantin_figure_see(void *context, uint8_t index, const int32_t *position);
 
+/* The hips of a pose in the world; then lets the camera follow a target, along the axes that it follows. */
+void pantin_figure_hips(const pantin_figure *figure, const int32_t *pose, int32_t *hips);
+void pantin_figure_follow(pantin_figure *figure);
+
+/* Sorts the lines from far to near. */
+void pantin_figure_sort(pantin_figure *figure);
+
 /* Places the first `count` joints about `origin`, turned by `view`. */
 void pantin_figure_place(const pantin_figure *figure, const int32_t *pose, int32_t (*view)[3], const int32_t *origin, uint16_t count,
                          pantin_figure_visit each, void *context);

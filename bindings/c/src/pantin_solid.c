@@ -97,6 +97,7 @@ static int aim_along(int32_t *v) {
 /* ---- The character ---- */
 
 static const uint8_t *look_of(const pantin_solid *s) { return s->look ? s->look : default_look; }
+static uint8_t radius_in(const uint8_t *look, int radius) { return look[RADII_AT + radius]; }
 static const uint8_t *tint_of(const pantin_solid *s, uint8_t material) { return look_of(s) + TINTS_AT + 4 * material; }
 static int32_t thousandths_of(const pantin_solid *s, uint8_t radius) { return look_of(s)[RADII_AT + (s->small ? RADII : 0) + radius]; }
 static uint8_t attachments(const pantin_solid *s) { return look_of(s)[COUNT_AT]; }
@@ -490,10 +491,10 @@ static void cover(const void *context, const pantin_figure *f, pantin_extent *e)
     }
     eighth = height_of(s) >> 3;
     joints[0] = p->head;
-    reaches[0] = HEAD_MIDDLE + most(look[RADII_AT + SKULL], look[REACH_AT] * 4);
+    reaches[0] = HEAD_MIDDLE + most(radius_in(look, SKULL), look[REACH_AT] * 4);
     joints[1] = p->arms[0][2];
     joints[2] = p->arms[1][2];
-    reaches[1] = reaches[2] = HAND_REACH + look[RADII_AT + HAND];
+    reaches[1] = reaches[2] = HAND_REACH + radius_in(look, HAND);
     joints[3] = p->neck;
     reaches[3] = look[REACH_AT + 1] * 4;
     joints[4] = p->hips;
@@ -569,8 +570,67 @@ static int32_t seen_part(const pantin_figure *f, int32_t part) {
     return f->spare >= 14 ? part >> (f->spare - 14) : part * (1 << (14 - f->spare));
 }
 
+/* ---- Where the figure stands ---- */
+
+static const pantin_placement origin = {{0, 0}, 0};
+
+/* Turns a rotation about the vertical axis. */
+static void turn_level(const pantin_figure *f, int32_t (*r)[3], int32_t angle) {
+    pantin_bone bone;
+    pantin_drive drive;
+    memset(&bone, 0, sizeof bone);
+    bone.drives = 1;
+    drive.first = 0;
+    drive.what = (f->up & 3) % 3;
+    pantin_figure_rotate(r, &bone, &drive, &angle);
+}
+
+/* The camera's axes as they are to a figure that is not turned. */
+static void view_of(const pantin_figure *f, const pantin_placement *at, int32_t (*view)[3]) {
+    memcpy(view, f->view, sizeof f->view);
+    turn_level(f, view, at->heading);
+}
+
+/* A place in figure units. */
+static void place_in_units(const pantin_figure *f, const pantin_placement *at, int32_t *place) {
+    const int64_t far = (int64_t)1 << 30;
+    int16_t shift = f->position_shift;
+    uint8_t axis = (f->up & 3) % 3, i;
+    place[axis] = 0;
+    for (i = 0; i < 2; i++) {
+        int64_t raw = at->place[i];
+        raw = shift >= 0 ? raw >> (shift < 63 ? shift : 63) : (int64_t)((uint64_t)raw << (-shift & 63));
+        place[(axis + 1 + i) % 3] = (int32_t)(raw < -far ? -far : raw > far ? far : raw);
+    }
+}
+
+/* Places a pose before the camera, somewhere in the world. */
+static void values_at(pantin_figure *f, const int32_t *pose, const pantin_placement *at, pantin_figure_visit each, void *context) {
+    int32_t view[3][3], place[3], from[3];
+    uint8_t i;
+    place_in_units(f, at, place);
+    pantin_figure_hips(f, pose, from);
+    pantin_figure_world(view);
+    turn_level(f, view, at->heading);
+    pantin_figure_apply_any(view, from, from);
+    for (i = 0; i < 3; i++) f->target[i] = sum(from[i], place[i]);
+    pantin_figure_follow(f);
+    /* The target as the figure sees it. */
+    for (i = 0; i < 3; i++) from[i] = difference(f->target[i], place[i]);
+    pantin_figure_world(view);
+    turn_level(f, view, difference(0, at->heading));
+    pantin_figure_apply_any(view, from, from);
+    view_of(f, at, view);
+    pantin_figure_place(f, pose, view, from, PANTIN_MAX_BONES + 1, each, context);
+}
+
+void pantin_figure_pose_at(pantin_figure *f, const int32_t *pose, const pantin_placement *at) {
+    values_at(f, pose, at, pantin_figure_see, f);
+    pantin_figure_sort(f);
+}
+
 /* Where the head looks. */
-static void turn_head(pantin_solid *s, const int32_t *pose) {
+static void turn_head(pantin_solid *s, const int32_t *pose, const pantin_placement *at) {
     const pantin_figure *f = &s->figure;
     const pantin_bone *bone = &f->bones[s->person.head];
     int32_t view[3][3], v[3], radius, unit = most(pantin_figure_seen(f, AXIS), 1);
@@ -579,7 +639,7 @@ static void turn_head(pantin_solid *s, const int32_t *pose) {
     axes[0] = s->up;
     axes[1] = s->face;
     axes[2] = s->left;
-    memcpy(view, f->view, sizeof view);
+    view_of(f, at, view);
     turned(f, pose, s->person.head, view);
     radius = (s->radii[SKULL] * pantin_figure_magnification(bone->depth)) >> 14;
     for (i = 0; i < 3; i++) {
@@ -770,7 +830,18 @@ void pantin_solid_pose(pantin_solid *s, const int32_t *pose) {
         return;
     }
     pantin_figure_values(&s->figure, pose, keep_and_see, s);
-    if (s->build == PANTIN_PERSON) turn_head(s, pose);
+    if (s->build == PANTIN_PERSON) turn_head(s, pose, &origin);
+    sort(s);
+}
+
+void pantin_solid_pose_at(pantin_solid *s, const int32_t *pose, const pantin_placement *at) {
+    if (!s->figure.width) return;
+    if (s->build == PANTIN_LINES) {
+        pantin_figure_pose_at(&s->figure, pose, at);
+        return;
+    }
+    values_at(&s->figure, pose, at, keep_and_see, s);
+    if (s->build == PANTIN_PERSON) turn_head(s, pose, at);
     sort(s);
 }
 
@@ -867,7 +938,7 @@ static const int16_t *row_of(const hull_rows *h, int32_t row) { return row < h->
 static void add_circle(hull_rows *h, const int32_t *c, int32_t pitch, uint8_t shift) {
     int32_t x = c[0], y = c[1], r = c[2], reciprocal, row, last, height;
     if (r <= 0) return;
-    reciprocal = (64L << 16) / r;
+    reciprocal = ((int32_t)64 << 16) / r;
     row = most((y - r + pitch / 2 - 1) >> shift, h->first);
     last = least((y + r - pitch / 2) >> shift, h->last);
     for (height = row * pitch + pitch / 2 - y; row <= last; row++, height += pitch) {

@@ -80,7 +80,8 @@ typedef struct pantin_solid {
 pantin_result pantin_solid_look(pantin_solid *solid, const uint8_t *look, size_t length);
 
 /* Sets the figure up for a player's clip: pantin_figure_set_up on solid->figure, to which memory was lent, then finds a person's joints. It plays
- * about 48 frames of the clip. Leaves the player at frame 0. */
+ * about 48 frames of the clip. Leaves the player at frame 0. Returns PANTIN_NOT_FOUND for a width or height of 0 or above 2047, and what
+ * pantin_figure_set_up does. */
 pantin_result pantin_solid_set_up(pantin_solid *solid, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
                                   size_t scratch_room);
 
@@ -92,12 +93,17 @@ pantin_result pantin_solid_aim(pantin_solid *solid, pantin_player *player, const
  * on the poses before. */
 void pantin_solid_pose(pantin_solid *solid, const int32_t *pose);
 
+/* The same for a figure that stands somewhere in the world, as `placement` of an animator says in the unit of the clip for which the figure was set
+ * up: the ground, and a camera that is fixed, stay where they are. The second function is for a figure of lines. */
+void pantin_solid_pose_at(pantin_solid *solid, const int32_t *pose, const pantin_placement *placement);
+void pantin_figure_pose_at(pantin_figure *figure, const int32_t *pose, const pantin_placement *placement);
+
 /* Draws rows y0 to y1 - 1 of the picture: `rows` takes them from its start, `stride` bytes each. They are cleared before. With `floor` 1 the figure
  * stands on a floor and has a shadow. Returns PANTIN_NOT_FOUND if y1 is beyond the display or the format is unknown, PANTIN_NO_ROOM if `stride` is
  * too small for a row, PANTIN_ERROR_HEAD for a figure that was not set up. */
 pantin_result pantin_solid_draw(const pantin_solid *solid, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int floor);
 
-/* The same for a figure of lines, in the pose of pantin_figure_pose: the pixels of the crate's FigureRenderer. With `ground` 1 it has a ground. */
+/* The same for a figure of lines, in the pose of pantin_figure_pose or pantin_figure_pose_at: the pixels of the crate's FigureRenderer. With `ground` 1 it has a ground. */
 pantin_result pantin_figure_draw(const pantin_figure *figure, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int ground);
 
 #ifdef __cplusplus

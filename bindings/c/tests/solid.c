@@ -43,6 +43,22 @@ static void print(const int32_t *values) {
     printf(" %08x\n", (unsigned)checksum(draw_lines, solid.figure.width, solid.figure.height));
 }
 
+/* The pose somewhere in the world, near the origin or far. */
+static void print_at(const int32_t *values, uint32_t n) {
+    pantin_placement at;
+    uint32_t x = n * 1664525u + 1013904223u;
+    uint8_t i;
+    for (i = 0; i < 2; i++) {
+        x = x * 1664525u + 1013904223u;
+        at.place[i] = (int64_t)((int32_t)(x & 0xffffff00u) >> (n % 20)) * (n % 20 ? 1 : 0x1000001);
+    }
+    at.heading = n % 5 ? (int32_t)(x * 5 & 0xffffff00u) : 0;
+    pantin_solid_pose_at(&solid, values, &at);
+    printf("at %08x", (unsigned)checksum(draw_solid, solid.figure.width, solid.figure.height));
+    pantin_figure_pose_at(&solid.figure, values, &at);
+    printf(" %08x\n", (unsigned)checksum(draw_lines, solid.figure.width, solid.figure.height));
+}
+
 static int set_up(pantin_player *player, uint8_t shot) {
     pantin_result result;
     const uint8_t *look = solid.look;
@@ -87,6 +103,7 @@ static void frames(pantin_player *player) {
     uint32_t frame, x = 1, n;
     uint16_t c;
     uint8_t shot;
+    pantin_result refused;
     for (shot = 0; shot < sizeof shots / sizeof *shots; shot++) {
         need(pantin_restart(player) == PANTIN_OK, "restart");
         if (!set_up(player, shot)) {
@@ -97,6 +114,7 @@ static void frames(pantin_player *player) {
         for (frame = 0; frame < player->clip->frames; frame += STEP) {
             need(pantin_seek(player, frame) == PANTIN_OK, "seek");
             print(pose);
+            if (frame % (4 * STEP) == 0) print_at(pose, frame / STEP);
         }
     }
     /* Poses that no clip contains. */
@@ -106,6 +124,13 @@ static void frames(pantin_player *player) {
             pose[c] = (int32_t)(x & 0xffffff00u) >> (n % 16);
         }
         print(pose);
+        print_at(pose, n);
+    }
+    need(pantin_restart(player) == PANTIN_OK, "restart");
+    for (n = 0; n < 4 && solid.figure.width; n++) {
+        refused = pantin_solid_set_up(&solid, player, (uint16_t)(n == 0 ? 0 : n == 1 ? 2048 : 64), (uint16_t)(n == 2 ? 0 : n == 3 ? 2048 : 64), scratch, JOINTS);
+        need(refused == PANTIN_NOT_FOUND && !solid.figure.width, "no such display");
+        solid.figure.width = 1;
     }
 }
 

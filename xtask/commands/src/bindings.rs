@@ -209,6 +209,7 @@ impl Bindings {
             }
             Ok(())
         });
+        steps.run("conversions", || conversions(&folder));
         steps.run("lines of figures against the crate's", || figure::lines(&folder));
         steps.run("solid figures against the crate's", || solid::pictures(&folder));
         steps.run("faces against the crate's", || face::pictures(&folder));
@@ -319,6 +320,18 @@ fn host_program_with(folder: &TempDir, compiler: &str, name: &str, options: &[&s
     let test = format!("tests/{name}.c");
     let sources: Vec<&str> = SOURCES.into_iter().chain([test.as_str()]).collect();
     compile(command, &sources, &folder.path().join(format!("{name}-{compiler}")))
+}
+
+/// Compiles what programs compile with the warnings of strict projects: conversions that can change a value, and what C++20 deprecates.
+fn conversions(folder: &TempDir) -> Result<()> {
+    for (compiler, options) in [("gcc", &["-std=c99", "-O2"][..]), ("g++", &["-x", "c++", "-std=c++20"])] {
+        for source in SOURCES {
+            let mut command = Command::new(compiler);
+            command.args(options).args([KEYS, "-Wconversion"]);
+            compile(command, &[source], &folder.path().join("conversions.o"))?;
+        }
+    }
+    Ok(())
 }
 
 /// The clips and banks among the vectors, with their rigs.

@@ -7,11 +7,11 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use harness::paths;
 use harness::vectors::faces::{Picture, sum_of};
-use pantin::{Player, Pose};
+use pantin::{Angle, Player, Pose};
 use pantin_figure::ink::Ink;
 use pantin_figure::solid::{Build, Look, SolidFigure, look_text};
 use pantin_figure::surface::OnTarget;
-use pantin_figure::{CameraTarget, Canvas, DrawStyle, View};
+use pantin_figure::{CameraTarget, Canvas, DrawStyle, Stand, View};
 use tempfile::TempDir;
 
 use super::face::same;
@@ -42,6 +42,18 @@ fn shots() -> [([u16; 2], View); 5] {
     shots
 }
 
+/// Places near the origin and far, as in the program in C.
+fn stand(n: u32) -> Stand {
+    let mut x = n.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    let place = [(); 2].map(|()| {
+        x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let near = (x & 0xffff_ff00).cast_signed() >> (n % 20);
+        i64::from(near) * if n % 20 == 0 { 0x100_0001 } else { 1 }
+    });
+    let heading = if n % 5 == 0 { 0 } else { (x.wrapping_mul(5) & 0xffff_ff00).cast_signed() };
+    Stand { place, heading: Angle::from_bits(heading) }
+}
+
 /// A solid figure on a display of a size.
 struct Drawn {
     figure: SolidFigure<BONES>,
@@ -60,10 +72,24 @@ impl Drawn {
     /// Prints the checksums of a pose's pictures: solid, and as lines.
     fn print(&mut self, text: &mut String, pose: Pose<'_>) -> Result<()> {
         self.figure.set_pose(pose)?;
-        let solid = sum_of(&self.picture(true), &self.picture(true), &self.picture(true));
-        let lines = sum_of(&self.picture(false), &self.picture(false), &self.picture(false));
+        let [solid, lines] = self.sums();
         writeln!(text, "{solid:08x} {lines:08x}")?;
         Ok(())
+    }
+
+    /// The same of a pose somewhere in the world.
+    fn print_at(&mut self, text: &mut String, pose: Pose<'_>, n: u32) -> Result<()> {
+        self.figure.set_pose_at(pose, stand(n))?;
+        let [solid, lines] = self.sums();
+        writeln!(text, "at {solid:08x} {lines:08x}")?;
+        Ok(())
+    }
+
+    /// Checksums of the picture of the body, and of that of lines.
+    fn sums(&mut self) -> [u32; 2] {
+        let solid = sum_of(&self.picture(true), &self.picture(true), &self.picture(true));
+        let lines = sum_of(&self.picture(false), &self.picture(false), &self.picture(false));
+        [solid, lines]
     }
 
     fn picture<C: Ink>(&mut self, solid: bool) -> Picture<C> {
@@ -92,10 +118,11 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
     let clips = files()?.into_iter().filter(|(clip, _)| clip.extension().is_some_and(|extension| extension == "ptn"));
     cases.extend(clips.map(|(clip, rig)| (clip, None, rig)));
     let programs = ["gcc", "clang"].map(|compiler| host_program(folder, compiler, "solid"));
-    let (mut pictures, mut people) = (0, 0);
+    let (mut pictures, mut people, mut stands) = (0, 0, 0);
     for (clip, look, rig) in &cases {
         let expected = text(clip, look.as_deref(), rig.as_deref()).with_context(|| clip.display().to_string())?;
         pictures += expected.lines().filter(|line| line.len() == 17).count();
+        stands += expected.matches("at ").count();
         people += expected.matches("build 2").count();
         for program in &programs {
             let mut command = Command::new(program.as_ref().map_err(|error| anyhow::anyhow!("{error:#}"))?);
@@ -112,8 +139,11 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
         same("damaged characters", &expected, &String::from_utf8(output(command)?.stdout)?)?;
     }
     let refused = expected.lines().filter(|line| *line == "refused").count();
-    println!("   {} clips, {people} people, {pictures} poses, {MUTANTS} damaged characters ({refused} refused)", cases.len());
-    ensure!(people > 40, "few people");
+    println!(
+        "   {} clips, {people} people, {pictures} poses, {stands} of them also somewhere in the world, {MUTANTS} damaged characters ({refused} refused)",
+        cases.len()
+    );
+    ensure!(people > 40 && stands > 1000, "few people or stands");
     Ok(())
 }
 
@@ -144,6 +174,9 @@ fn text(clip: &Path, look: Option<&Path>, rig: Option<&Path>) -> Result<String> 
         for frame in (0..player.clip().frames()).step_by(STEP as usize) {
             player.seek(frame);
             drawn.print(&mut text, player.pose())?;
+            if frame % (4 * STEP) == 0 {
+                drawn.print_at(&mut text, player.pose(), frame / STEP)?;
+            }
         }
         last = Some(drawn);
     }
@@ -155,7 +188,9 @@ fn text(clip: &Path, look: Option<&Path>, rig: Option<&Path>) -> Result<String> 
             *value = (x & 0xffff_ff00).cast_signed() >> (n % 16);
         }
         if let Some(drawn) = &mut last {
-            drawn.print(&mut text, Pose { values: &values, form: player.pose().form })?;
+            let pose = Pose { values: &values, form: player.pose().form };
+            drawn.print(&mut text, pose)?;
+            drawn.print_at(&mut text, pose, n)?;
         }
     }
     Ok(text)
