@@ -227,7 +227,7 @@ fn the_element_draws_the_lines_of_the_firmwares_face() {
         }
         let clip = folder.path().join(source.file_stem().unwrap()).with_extension("ptn");
         let mut tool = Command::new(build::host_tool().unwrap());
-        tool.arg("convert").arg(&source).arg("-o").arg(&clip).args(["--effort", "fast", "--quiet"]);
+        tool.arg("convert").arg(&source).arg("-o").arg(&clip).args(["--effort", "fast", "--quiet", "--segments"]);
         if source.extension().is_some_and(|end| end == "csv") {
             tool.args(["--fps", "30"]);
         }

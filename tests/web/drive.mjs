@@ -17,8 +17,15 @@ const HELPERS = () => {
   };
 };
 
+// A context whose waits a busy machine does not end: there a picture may take minutes that takes a second elsewhere.
+async function patient(browser, options) {
+  const context = await browser.newContext(options);
+  context.setDefaultTimeout(300_000);
+  return context;
+}
+
 async function opened(browser, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
+  const context = await patient(browser, { viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.troubles = [];
   page.on("pageerror", (error) => page.troubles.push(error.message));
@@ -426,7 +433,7 @@ const cases = {
 
   // The element on a page of another's: with a strict security policy, moved, removed, in large numbers, in other colors.
   async embed(page, browser) {
-    const context = await browser.newContext({ viewport: { width: 800, height: 600 } });
+    const context = await patient(browser, { viewport: { width: 800, height: 600 } });
     const plain = await context.newPage();
     plain.on("pageerror", (error) => page.troubles.push(`embedded: ${error.message}`));
     plain.on("console", (message) => message.type() === "error" && page.troubles.push(`embedded: ${message.text()}`));
@@ -636,7 +643,7 @@ const cases = {
 
   // A gallery of 1,000 clips: each small picture is drawn once, when it comes near the screen, by one player.
   async crowd(page, browser) {
-    const many = await (await browser.newContext({ viewport: { width: 1280, height: 900 } })).newPage();
+    const many = await (await patient(browser, { viewport: { width: 1280, height: 900 } })).newPage();
     many.on("pageerror", (error) => page.troubles.push(error.message));
     const list = Array.from({ length: 1000 }, (_, index) => ({ name: `clip ${index}`, file: "clips/walk.ptn", bytes: 1 }));
     await many.route("**/clips.json", (route) => route.fulfill({ json: list }));
@@ -704,7 +711,7 @@ const cases = {
       document.querySelector("#drop").dispatchEvent(over);
       document.querySelector("#drop").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
     }, files);
-    await page.waitForFunction(() => !document.querySelector("#result").hidden || document.querySelector("#trouble").textContent, null, { timeout: 120000 });
+    await page.waitForFunction(() => !document.querySelector("#result").hidden || document.querySelector("#trouble").textContent);
     assert.equal(await page.locator("#trouble").textContent(), "");
     await page.waitForFunction(() => converted.frame > 2);
     await page.evaluate(() => (converted.pause(), converted.seek(converted.frames >> 1)));
@@ -730,7 +737,7 @@ const cases = {
     for (const path of args.files) {
       const begun = Date.now();
       await page.locator("#files").setInputFiles(path);
-      await page.waitForFunction(() => document.querySelector("#trouble").textContent && document.querySelector("#working").hidden, null, { timeout: 60000 });
+      await page.waitForFunction(() => document.querySelector("#trouble").textContent && document.querySelector("#working").hidden);
       outcomes.push({ said: await page.locator("#trouble").textContent(), ms: Date.now() - begun, shown: await page.locator("#result").isVisible() });
     }
     return outcomes;
@@ -742,7 +749,7 @@ const cases = {
     const converts = async (act) => {
       await page.evaluate(() => (document.querySelector("#report").textContent = ""));
       await act();
-      await page.waitForFunction(() => document.querySelector("#working").hidden && (document.querySelector("#report").textContent || document.querySelector("#trouble").textContent), null, { timeout: 60000 });
+      await page.waitForFunction(() => document.querySelector("#working").hidden && (document.querySelector("#report").textContent || document.querySelector("#trouble").textContent));
       return result();
     };
     const clipBytes = ({ report }) => +/clip\s+([\d,]+) bytes/.exec(report)[1].replace(",", "");
@@ -828,7 +835,7 @@ const cases = {
   async times(page, browser) {
     const first = [];
     for (let run = 0; run < 5; run++) {
-      const one = await (await browser.newContext()).newPage();
+      const one = await (await patient(browser)).newPage();
       await one.goto(`${args.site}clips.json`);
       first.push(await one.evaluate(async (clip) => {
         const begun = performance.now();
@@ -843,7 +850,7 @@ const cases = {
     // The same over slow lines, of a page with preload links: from the request of the page to the first figure.
     const slow = {};
     for (const [line, path, latency, kilobits] of args.lines) {
-      const context = await browser.newContext();
+      const context = await patient(browser);
       const one = await context.newPage();
       const session = await context.newCDPSession(one);
       await session.send("Network.enable");
@@ -853,13 +860,13 @@ const cases = {
         look();
       });
       await one.goto(`${args.site}${path}`, { waitUntil: "commit" });
-      slow[line] = await one.waitForFunction(() => window.first, null, { timeout: 60000 }).then((time) => time.jsonValue());
+      slow[line] = await one.waitForFunction(() => window.first).then((time) => time.jsonValue());
       await context.close();
     }
     // The part of a core's time that 30 players on the screen take, and 30 that cannot be seen.
     const crowd = {};
     for (const [where, top] of [["on screen", 0], ["off screen", 5000]]) {
-      const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+      const context = await patient(browser, { viewport: { width: 1280, height: 900 } });
       const one = await context.newPage();
       await one.goto(`${args.site}clips.json`);
       await one.evaluate(async ({ clip, top }) => {
