@@ -52,19 +52,10 @@ impl<'a> Reader<'a> {
     /// A number of at most five bytes. One that does not fit 32 bits is malformed, and loses its highest bits.
     #[inline(never)]
     pub(crate) fn varint(&mut self) -> u32 {
-        // What is in a rig, hundreds of times in a walk through its joints: without CRCs between, and four bytes at most.
-        let (mut value, mut shift, mut length) = (0, 0, 0);
-        for &byte in self.bytes.get(self.position as usize..).filter(|_| !self.blocks).unwrap_or_default() {
-            value |= u32::from(byte & 0x7f) << shift;
-            length += 1;
-            if byte < 0x80 {
-                self.position += length;
-                return value;
-            }
-            shift += 7;
-            if shift > 21 {
-                break;
-            }
+        // Most numbers of a rig, which is walked through often: without CRCs between, one byte.
+        if let Some(&byte @ ..0x80) = self.bytes.get(self.position as usize).filter(|_| !self.blocks) {
+            self.position += 1;
+            return byte.into();
         }
         self.any_varint()
     }
