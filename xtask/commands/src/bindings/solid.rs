@@ -48,9 +48,9 @@ fn stand(n: u32) -> Stand {
     let place = [(); 2].map(|()| {
         x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         let near = (x & 0xffff_ff00).cast_signed() >> (n % 20);
-        i64::from(near) * if n % 20 == 0 { 0x100_0001 } else { 1 }
+        i64::from(near) * if n.is_multiple_of(20) { 0x100_0001 } else { 1 }
     });
-    let heading = if n % 5 == 0 { 0 } else { (x.wrapping_mul(5) & 0xffff_ff00).cast_signed() };
+    let heading = if n.is_multiple_of(5) { 0 } else { (x.wrapping_mul(5) & 0xffff_ff00).cast_signed() };
     Stand { place, heading: Angle::from_bits(heading) }
 }
 
