@@ -26,7 +26,7 @@ fn the_reference_board_is_steered_as_on_the_host() {
     println!("{shown} pictures are equal");
 }
 
-/// The same with a table of feet: the board holds them as the host does, and they are held.
+/// Plays the session with a table of feet: the board's pictures are the host's, and differ from those without feet.
 #[test]
 fn the_reference_board_holds_feet_as_the_host_does() {
     if setup::host_only("feet on a board") {

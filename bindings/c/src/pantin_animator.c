@@ -345,7 +345,7 @@ static void rotate(const pantin_heading *h, int32_t a, int32_t b, int64_t *to) {
     for (i = 0; i < 2; i++) to[i] = (to[i] + 0x20000000L) >> 30;
 }
 
-/* The same of a way beyond that range: in parts of 2^30, whose products are whole. */
+/* Turns a way beyond that range: in parts of 2^30, whose products are whole. */
 static void rotate_wide(const pantin_heading *h, int64_t a, int64_t b, int64_t *to) {
     int64_t high[2];
     if (h->angle == 0) {
@@ -680,7 +680,7 @@ static void events_forward(pantin_animator *a, uint32_t from, uint32_t to) {
     }
 }
 
-/* The same, last first. A clip lists them forwards, so that each is searched for. */
+/* Passes the events backwards, last first. A clip lists them forwards, so that each is searched for. */
 static void events_backward(pantin_animator *a, uint32_t from, uint32_t to) {
     pantin_event event;
     uint32_t count = 0, room = (uint32_t)(PANTIN_EVENTS - a->event_count), back, at;
@@ -891,7 +891,7 @@ static int carry(pantin_animator *a) {
     return 1;
 }
 
-/* Whether so many frames lead neither to the last frame nor past one where the cubics are solved. */
+/* Whether this number of frames ends before the clip's last frame, and does not pass a frame where the cubics are solved. */
 static int may_carry(const pantin_animator *a, uint8_t frames) {
     static const uint8_t again[3] = {2, 32, 128};
     uint8_t i;
@@ -1959,8 +1959,8 @@ static pantin_result make(pantin_character *c, uint32_t at) {
     return PANTIN_OK;
 }
 
-/* Makes the first transition whose cause is there and which does not lead to a state of `been`, where more than one state was. `made` is 1 if there was
-   one. */
+/* Takes the first transition whose cause holds. Once there is more than one state in `been`, a transition that leads to one of them is left out. `made`
+ * is 1 if there was one. */
 static pantin_result enter(pantin_character *c, const seen_inputs *inputs, uint64_t been, uint8_t *made) {
     uint64_t own = (uint64_t)1 << c->state;
     uint32_t index, any = c->counts[ANY];

@@ -124,7 +124,7 @@ typedef struct pantin_animator {
  * PANTIN_NO_ROOM if it is too small, PANTIN_NOT_FOUND for a rig without joints, or what reading returned. */
 pantin_result pantin_animator_open(pantin_animator *animator, const pantin_clip *clip, const pantin_animator_memory *memory);
 
-/* The same for a figure that is carried by the joint of an index. */
+/* Opens an animator for a figure that is carried by the joint of an index. */
 pantin_result pantin_animator_open_carried(pantin_animator *animator, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier);
 
 /* Goes over to a clip of the same rig from a frame (from the last one if there are fewer) at a speed, in `frames` frames of the new clip. On an error the

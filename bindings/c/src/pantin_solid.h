@@ -93,7 +93,7 @@ pantin_result pantin_solid_aim(pantin_solid *solid, pantin_player *player, const
  * on the poses before. */
 void pantin_solid_pose(pantin_solid *solid, const int32_t *pose);
 
-/* The same for a figure that stands somewhere in the world, as `placement` of an animator says in the unit of the clip for which the figure was set
+/* Sets the pose of a figure that stands somewhere in the world, as `placement` of an animator says in the unit of the clip for which the figure was set
  * up: the ground, and a camera that is fixed, stay where they are. The second function is for a figure of lines. */
 void pantin_solid_pose_at(pantin_solid *solid, const int32_t *pose, const pantin_placement *placement);
 void pantin_figure_pose_at(pantin_figure *figure, const int32_t *pose, const pantin_placement *placement);
@@ -103,7 +103,7 @@ void pantin_figure_pose_at(pantin_figure *figure, const int32_t *pose, const pan
  * too small for a row, PANTIN_ERROR_HEAD for a figure that was not set up. */
 pantin_result pantin_solid_draw(const pantin_solid *solid, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int floor);
 
-/* The same for a figure of lines, in the pose of pantin_figure_pose or pantin_figure_pose_at: the pixels of the crate's FigureRenderer. With `ground` 1 it has a ground. */
+/* Draws a figure of lines, in the pose of pantin_figure_pose or pantin_figure_pose_at: the pixels of the crate's FigureRenderer. With `ground` 1 it has a ground. */
 pantin_result pantin_figure_draw(const pantin_figure *figure, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int ground);
 
 #ifdef __cplusplus

@@ -46,7 +46,7 @@ static int describe(pantin_clip *clip) {
     return 1;
 }
 
-/* The same of all clips of a bank. */
+/* Prints the checksums of all clips of a bank. */
 static int describe_bank(pantin_source *source) {
     pantin_bank bank;
     pantin_entry entry;

@@ -253,8 +253,8 @@ impl<'a> Machine<'a> {
         Ok(last)
     }
 
-    /// Makes the first transition whose cause is there and which does not lead to a state of `been`, where more than one state was. Of the events, those
-    /// after the first `heard` count.
+    /// Takes the first transition whose cause holds. Once there is more than one state in `been`, a transition that leads to one of them is
+    /// left out. Of the events, those after the first `heard` count.
     fn enter<'b>(
         &mut self,
         entries: Option<Entries<'_>>,

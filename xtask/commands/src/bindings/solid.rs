@@ -77,7 +77,7 @@ impl Drawn {
         Ok(())
     }
 
-    /// The same of a pose somewhere in the world.
+    /// Prints the checksums of a pose that stands somewhere in the world.
     fn print_at(&mut self, text: &mut String, pose: Pose<'_>, n: u32) -> Result<()> {
         self.figure.set_pose_at(pose, stand(n))?;
         let [solid, lines] = self.sums();

@@ -147,7 +147,7 @@ pub fn with_table(bank: &[u8], clips: u32, numbers: &mut Sequence) -> Vec<u8> {
     bytes
 }
 
-/// The same clip read in another form: a bit of the head that says how a joint is coded is turned over, and the CRC is mended.
+/// A clip in another form: one bit of its head, which says how a joint is coded, is inverted, and its CRC is computed again.
 pub fn in_another_form(file: &[u8]) -> Option<Vec<u8>> {
     let clip = Clip::new_checked(file).ok()?;
     let start = file.len().checked_sub(clip.motion_len()).filter(|_| clip.crc_len() == 2)?;
