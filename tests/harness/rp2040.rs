@@ -225,7 +225,8 @@ impl Request {
         self
     }
 
-    /// What happens to the SSD1306's wires after these seconds: `in`, `out`, or `stuck` where one holds the bus low.
+    /// What happens to the SSD1306's wires after these seconds: `in`, `out`, `stuck` where one holds the bus low, or `amid a byte` where the
+    /// display holds SDA for five clocks.
     pub fn plugs(mut self, plugs: &[(f64, &'static str)]) -> Request {
         self.plugs = Some(plugs.to_vec());
         self

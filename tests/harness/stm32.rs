@@ -24,6 +24,14 @@ pub struct Request {
     pub serial: u32,
     /// Chip select, data/command and reset of a display over SPI.
     pub spi_pins: [&'static str; 3],
+    /// SCL and SDA of a display over I2C.
+    pub wires: [&'static str; 2],
+    /// Clocks until a device lets go of SDA, which it holds at the start.
+    pub held: u32,
+    /// A wire that is held low for ever.
+    pub ground: Option<&'static str>,
+    /// The watchdog resets the chip after this many bytes on the display's bus, once.
+    pub hangs_after: Option<usize>,
     /// Letters before each picture but the first.
     pub keys: Vec<Vec<u8>>,
     /// Bytes of RAM.
@@ -102,6 +110,10 @@ impl Request {
             crystal: true,
             serial: 0x4001_1000,
             spi_pins: ["A4", "B0", "B1"],
+            wires: ["B6", "B7"],
+            held: 0,
+            ground: None,
+            hangs_after: None,
             keys,
             ram: 64 << 10,
             out: PathBuf::new(),

@@ -3,6 +3,10 @@
 const ADDRESS = 0x3c;
 const [WIDTH, PAGES] = [128, 8];
 
+// The Pico's pins, and the state of one that is an output and low.
+const [SDA, SCL] = [4, 5];
+const LOW = 0;
+
 // Registers of the bus: target address, data, enable, the abort's source; the bits of an abort and of the controller being on.
 const [TARGET, DATA_CMD, ABORT_SOURCE] = [0x04, 0x10, 0x80];
 const [ABORTED, ENABLED] = [1 << 6, 1];
@@ -32,17 +36,32 @@ export class Ssd1306 {
   }
 
   // "in": it gets power. "out": it has none, and nobody answers, as where its wires are swapped. "stuck": nor can anything be sent, since a wire
-  // holds the bus low.
+  // holds the bus low. "amid a byte": the chip was reset while it sent a bit, and it holds SDA for five clocks.
   plug(state) {
-    this.plugged = state === 'in';
+    this.plugged = state === 'in' || state === 'amid a byte';
     this.stuck = state === 'stuck';
+    this.clocks = state === 'amid a byte' ? 5 : 0;
     this.powerOn();
+    this.level();
     if (!this.stuck) this.held?.();
     this.held = null;
   }
 
+  // What the chip reads of its pins.
+  level() {
+    this.sda?.setInputValue(!this.stuck && !this.clocks);
+    this.scl?.setInputValue(!this.stuck);
+  }
+
   // Puts it on a bus whose bytes take as long as the bus's registers say, or no time.
   attach(chip, bus, timed) {
+    [this.sda, this.scl] = [chip.gpio[SDA], chip.gpio[SCL]];
+    this.level();
+    this.scl.addListener((state) => {
+      if (state !== LOW || !this.clocks) return;
+      this.clocks -= 1;
+      this.level();
+    });
     const bit = () => (1e9 * (bus.sclLowPeriod + bus.sclHighPeriod)) / chip.clkSys;
     const after = (bits, then) => {
       if (!timed) return then();
@@ -53,7 +72,7 @@ export class Ssd1306 {
     bus.onConnect = (address) => {
       this.control = null;
       this.bytes += 1;
-      after(9, () => bus.completeConnect(this.plugged && address === ADDRESS));
+      after(9, () => bus.completeConnect(this.plugged && !this.clocks && address === ADDRESS));
     };
     bus.onWriteByte = (byte) => {
       this.take(byte);

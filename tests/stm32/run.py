@@ -7,6 +7,10 @@
 #   crystal   whether the crystal starts
 #   serial    the address of the serial port, USART1 or USART2
 #   spi_pins  chip select, data/command and reset of a display over SPI, as "B0" for PB0
+#   wires     SCL and SDA of a display over I2C
+#   held      clocks until a device lets go of SDA, which it holds at the start
+#   ground    a wire that is held low for ever, or null
+#   hangs_after  the bytes on the I2C bus after which the watchdog resets the chip, once, or null
 #   keys      letters before each picture but the first, as arrays of bytes; the program plays in step
 #   out       a file for the bytes on the display's bus, in 16 bits each with the low byte first: a byte over SPI has bit 8 where the data pin is
 #             high; over I2C there are 0x200 and the address, bytes, 0x400 at a stop; 0xffff where a picture is complete
@@ -23,6 +27,7 @@ PORTS = {0x40020000: "A", 0x40020400: "B", 0x40020800: "C", 0x40020C00: "D", 0x4
 I2C1, SPI1 = 0x40005400, 0x40013000
 IN_STEP, NEXT, SHOWN = 0x16, 0x0A, ord("F")
 HSI_HZ, HSE_HZ = 16_000_000, 25_000_000
+IWDGRSTF = 1 << 29
 # Instructions at most.
 LIMIT = 3_000_000_000
 
@@ -32,25 +37,32 @@ SERIAL = request["serial"]
 
 class Machine:
     def __init__(self):
+        self.hangs_after = request["hangs_after"]
+        self.text = bytearray()
+        self.stream = []
+        self.faults = []
+        self.reset(0)
+
+    # Everything but the RAM is as after a reset, for these reasons.
+    def reset(self, reasons):
         # Registers at their addresses, with their values after reset where these matter (RM0383).
-        self.registers = {RCC: 0x83, RCC + 4: 0x24003010, PWR: 0x8000, ACR: 0, PORTS_A: 0xA8000000, PORTS_A + 12: 0x64000000, PORTS_A + 8: 0x0C000000,
+        self.registers = {RCC: 0x83, RCC + 0x74: reasons, RCC + 4: 0x24003010, PWR: 0x8000, ACR: 0, PORTS_A: 0xA8000000, PORTS_A + 12: 0x64000000, PORTS_A + 8: 0x0C000000,
                           PORTS_A + 0x400: 0x280, PORTS_A + 0x40C: 0x100, PORTS_A + 0x408: 0xC0}
         self.received = [IN_STEP]
         self.keys = list(request["keys"])
         self.told = []
-        self.text = bytearray()
-        self.stream = []
         self.pictures = 0
         self.watchdog_ms = None
         self.crystal_polls = 0
         self.watchdog_before_crystal = False
         self.switches = []
-        self.faults = []
         # The I2C bus: idle, or after a start, an address.
         self.bus = None
         self.answered = False
+        self.held = request["held"]
         self.spi_unread = False
         self.done = False
+        self.hung = False
 
     def clocks(self):
         cr, pll, cfgr = self.registers[RCC], self.registers[RCC + 4], self.registers.get(RCC + 8, 0)
@@ -71,8 +83,8 @@ class Machine:
         if at == PWR + 4:
             return value | 1 << 14
         if at & ~0x3FF in PORTS and at & 0x3FF == 0x10:
-            # Buttons are released, and the bus is idle.
-            return 0xFFFF
+            # Buttons are released.
+            return 0xFFFF & ~sum(1 << int(wire[1:]) for wire in request["wires"] if PORTS[at & ~0x3FF] == wire[0] and not self.level(wire))
         if at == I2C1 + 0x14:
             if self.bus == "start":
                 return 1
@@ -101,7 +113,9 @@ class Machine:
         port, offset = at & ~0x3FF, at & 0x3FF
         if port in PORTS and offset == 0x18:
             output = self.registers.get(port + 0x14, 0)
+            scl = self.level(request["wires"][0])
             self.registers[port + 0x14] = (output | value & 0xFFFF) & ~(value >> 16 & ~value)
+            self.held -= scl and not self.level(request["wires"][0]) and self.held > 0
         elif at == PWR and value >> 14 & 3 != before >> 14 & 3 and self.registers[RCC] >> 24 & 1:
             self.faults.append("VOS changes while the PLL is on")
         elif at == RCC and value >> 16 & 1 and not before >> 16 & 1:
@@ -125,11 +139,18 @@ class Machine:
             if self.bus == "address" and not self.answered and not value >> 10 & 1:
                 self.bus = None
         elif at == I2C1 + 0x10:
+            if not all(map(self.level, request["wires"])):
+                self.faults.append("a transfer on a bus whose wires are held low")
             if self.bus == "start":
                 self.bus, self.answered = "address", value >> 1 == request["display"]
                 self.stream.append(0x200 | value >> 1)
             else:
                 self.stream.append(value & 0xFF)
+            if len(self.stream) == self.hangs_after:
+                self.hung = True
+                self.hangs_after = None
+        elif at == RCC + 0x74 and value >> 24 & 1:
+            self.registers[at] = 0
         elif at == SPI1 + 0xC:
             self.spi_unread = True
             select, data, reset = map(self.pin, request["spi_pins"])
@@ -143,6 +164,12 @@ class Machine:
     def pin(self, name):
         base = next(address for address, port in PORTS.items() if port == name[0])
         return self.registers.get(base + 0x14, 0) >> int(name[1:]) & 1
+
+    # A wire of the I2C bus is high unless something holds it low: ground, a device, or the program's own pin while it is an output.
+    def level(self, wire):
+        base = next(address for address, port in PORTS.items() if port == wire[0])
+        driven = self.registers.get(base, 0) >> int(wire[1:]) * 2 & 3 == 1 and not self.pin(wire)
+        return not (driven or wire == request["ground"] or self.held and wire == request["wires"][1])
 
     # A frame's number, in five bytes, ends a picture; letters and the wish for another one answer it.
     def tell(self, byte):
@@ -190,7 +217,7 @@ for head in range(count):
         emulator.mem_write(address, elf[offset:offset + length])
 for start in (0x40000000, 0xE0000000):
     emulator.mmio_map(start, 0x100000, lambda _, offset, size, base: machine.read(base + offset), start,
-                      lambda uc, offset, size, value, base: (machine.write(base + offset, value), machine.done and uc.emu_stop()), start)
+                      lambda uc, offset, size, value, base: (machine.write(base + offset, value), (machine.done or machine.hung) and uc.emu_stop()), start)
 # Each word of this region is a bit of the peripherals' registers.
 bit = lambda offset: (0x40000000 + offset // 32 & ~3, offset // 4 % 32)
 
@@ -201,12 +228,17 @@ def write_bit(_, offset, size, value, __):
 
 
 emulator.mmio_map(0x42000000, 0x2000000, lambda _, offset, size, __: machine.read(bit(offset)[0]) >> bit(offset)[1] & 1, 0, write_bit, 0)
-emulator.reg_write(arm.UC_ARM_REG_FPEXC, 1 << 30)
 stack, start = struct.unpack("<II", emulator.mem_read(FLASH, 8))
-emulator.reg_write(arm.UC_ARM_REG_SP, stack)
 emulator.hook_add(UC_HOOK_MEM_UNMAPPED, lambda uc, kind, at, size, value, _: sys.exit(f"access {kind} of {at:#x} at {uc.reg_read(arm.UC_ARM_REG_PC):#x}"))
 try:
-    emulator.emu_start(start, 0, count=LIMIT)
+    while True:
+        emulator.reg_write(arm.UC_ARM_REG_FPEXC, 1 << 30)
+        emulator.reg_write(arm.UC_ARM_REG_SP, stack)
+        emulator.emu_start(start, 0, count=LIMIT)
+        if not machine.hung:
+            break
+        machine.reset(IWDGRSTF)
+        machine.stream.clear()
 except UcError as error:
     sys.exit(f"{error} at {emulator.reg_read(arm.UC_ARM_REG_PC):#x}")
 with open(request["out"], "wb") as out:

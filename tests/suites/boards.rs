@@ -61,7 +61,7 @@ fn nucleo(features: &str) -> Firmware {
 fn request(image: &Firmware, display: Option<u8>) -> Request {
     // USART2, and D10, D9 and D8; there is no crystal.
     let (serial, spi_pins) = (0x4000_4400, ["B6", "C7", "A9"]);
-    Request { display, crystal: false, serial, spi_pins, ..Request::new(image.elf(), &KEYS) }
+    Request { display, crystal: false, serial, spi_pins, wires: ["B8", "B9"], ..Request::new(image.elf(), &KEYS) }
 }
 
 fn shows(outcome: &Outcome, panel: &mut impl Panel, display: Display, change: impl Fn(&Picture) -> Picture) {

@@ -156,6 +156,13 @@ fn the_receive_pin_is_pulled_up_and_the_bus_is_reported() {
     assert_eq!(String::from_utf8_lossy(&outcome.spoken), "I2C: 0x3c\r\n");
     let nothing = Request::new(&image, OLED).plugs(&[(0.0, "out")]).pictures(2).run().unwrap();
     assert_eq!(String::from_utf8_lossy(&nothing.spoken), "I2C: nothing answers\r\n");
+    let freed = Request::new(&image, OLED).plugs(&[(0.0, "amid a byte")]).pictures(2).run().unwrap();
+    let text = "I2C: a device held SDA low and let go after 5 clocks\r\nI2C: 0x3c\r\n";
+    assert_eq!(String::from_utf8_lossy(&freed.spoken), text);
+    assert_eq!(freed.pictures, outcome.pictures);
+    let held = Request::new(&image, OLED).plugs(&[(0.0, "stuck")]).pictures(2).run().unwrap();
+    let text = "I2C: SDA or SCL is held low: a wire on GND, or a display without power\r\n";
+    assert_eq!(String::from_utf8_lossy(&held.spoken), text);
 }
 
 #[test]

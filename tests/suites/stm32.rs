@@ -71,6 +71,42 @@ fn the_black_pill_shows_on_the_ssd1306_what_the_host_shows() {
 }
 
 #[test]
+fn the_black_pill_frees_a_bus_and_plays_on_where_it_cannot() {
+    if setup::host_only("the Black Pill's wires") {
+        return;
+    }
+    let image = image("");
+    let held = Request { held: 5, ..Request::new(image.elf(), &KEYS) }.run().unwrap();
+    assert_eq!(held.text, "I2C: a device held SDA low and let go after 5 clocks\r\nI2C: 0x3c\r\n");
+    is_right(&held);
+    equal(&held, &mut Mono::ssd1306(0x3c), OLED, |picture| picture);
+    for ground in ["B6", "B7"] {
+        let outcome = Request { ground: Some(ground), ..Request::new(image.elf(), &KEYS) }.run().unwrap();
+        assert_eq!(outcome.text, "I2C: SDA or SCL is held low: a wire on GND, or a display without power\r\n");
+        is_right(&outcome);
+        // Pictures without a byte.
+        assert!(outcome.done);
+        assert_eq!(outcome.stream, vec![0xffff; KEYS.len() + 1]);
+    }
+}
+
+#[test]
+fn the_black_pill_says_what_hung() {
+    if setup::host_only("the Black Pill's restart") {
+        return;
+    }
+    let image = image("");
+    // The set-up scans the bus, one byte for each address; the first picture has more than a thousand.
+    for (bytes, words) in [(20, "while it set the board up"), (600, "while it sent a picture to the display")] {
+        let outcome = Request { hangs_after: Some(bytes), ..Request::new(image.elf(), &KEYS) }.run().unwrap();
+        let start = if bytes == 20 { "I2C:" } else { "I2C: 0x3c\r\n" };
+        assert_eq!(outcome.text, format!("{start}Restarted by the watchdog: the program hung {words}\r\nI2C: 0x3c\r\n"));
+        is_right(&outcome);
+        equal(&outcome, &mut Mono::ssd1306(0x3c), OLED, |picture| picture);
+    }
+}
+
+#[test]
 fn the_black_pill_runs_without_a_crystal() {
     if setup::host_only("the Black Pill without a crystal") {
         return;

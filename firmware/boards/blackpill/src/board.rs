@@ -3,9 +3,7 @@
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
-#[cfg(not(feature = "spi"))]
-use board_common::report_bus;
-use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
+use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
 use board_drivers::Heartbeat;
 #[cfg(not(feature = "spi"))]
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
@@ -49,6 +47,7 @@ pub fn new(
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
     // First of all: it has its own clock.
     let mut watchdog = crate::watchdog::start(parts.IWDG, &parts.DBGMCU);
+    let by_watchdog = crate::watchdog::has_reset(&parts.RCC);
     let source = if crystal_starts(&parts.RCC) { rcc::Config::hse(CRYSTAL_HZ.Hz()) } else { rcc::Config::hsi() };
     let mut clocks = parts.RCC.freeze(source.sysclk(CPU_HZ.Hz()));
     let (a, b, c) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks), parts.GPIOC.split(&mut clocks));
@@ -58,16 +57,12 @@ pub fn new(
     let Ok(serial) = serial else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
-    #[cfg_attr(feature = "spi", allow(unused_mut))]
     let mut serial = NbSerial(serial);
+    report_restart(&mut serial, by_watchdog);
     #[cfg(not(feature = "spi"))]
     let display = {
-        // Without a display, the pull-ups keep the bus idle.
-        let pins = (b.pb6.internal_pull_up(true), b.pb7.internal_pull_up(true));
         let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-        let mut bus = parts.I2C1.i2c(pins, 400.kHz(), &mut clocks);
-        report_bus(&mut serial, &mut bus);
-        new(bus)
+        new(crate::i2c::new(parts.I2C1, b.pb6, b.pb7, &mut clocks, &mut serial))
     };
     #[cfg(feature = "spi")]
     let display = crate::spi_display::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);

@@ -4,6 +4,8 @@
 
 mod board;
 mod flash;
+#[cfg(not(feature = "spi"))]
+mod i2c;
 mod panic;
 #[cfg(feature = "spi")]
 mod spi_display;

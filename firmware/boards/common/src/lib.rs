@@ -20,6 +20,8 @@ mod look {
 #[cfg(not(feature = "emulated"))]
 mod panic_screen;
 mod register;
+#[cfg(not(feature = "emulated"))]
+mod restart;
 #[cfg(feature = "emulated")]
 mod run_emulated;
 mod run_forever;
@@ -48,6 +50,8 @@ pub use look::LOOK;
 #[cfg(not(feature = "emulated"))]
 pub use panic_screen::{PanicBoard, panic_screen, refusal_screen};
 pub use register::Register;
+#[cfg(not(feature = "emulated"))]
+pub use restart::report_restart;
 #[cfg(feature = "emulated")]
 pub use run_emulated::run_emulated;
 pub use run_forever::{IN_STEP, run_forever};

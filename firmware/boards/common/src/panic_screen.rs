@@ -55,6 +55,7 @@ pub fn panic_screen<L: Layout, B: PanicBoard<L>>(info: &PanicInfo, set_up: impl 
     }
     PANICKED.store(true, Ordering::Relaxed);
     let mut board = message_screen(info, set_up);
+    crate::restart::Stage::Panic.enter();
     for _ in 0..PANIC_SHOW_MS / FEED_MS {
         board.feed();
         delay.delay_ms(FEED_MS);

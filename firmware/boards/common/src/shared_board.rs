@@ -58,7 +58,11 @@ where
     type Capacity = C;
 
     fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
+        #[cfg(not(feature = "emulated"))]
+        crate::restart::Stage::Sending.enter();
         self.display.present(framebuffer);
+        #[cfg(not(feature = "emulated"))]
+        crate::restart::Stage::Playing.enter();
         (self.feed)();
     }
 

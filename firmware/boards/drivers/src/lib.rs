@@ -5,6 +5,7 @@
 pub mod color_panels;
 mod display;
 mod heartbeat;
+pub mod i2c_wires;
 pub mod indexed;
 pub mod led_matrix;
 pub mod nrf52;

@@ -18,6 +18,8 @@ use nrf52833_hal as nrf_hal;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
+/// The processor's clock.
+const CPU_HZ: u32 = 64_000_000;
 /// The first build whose debug port is closed after a reset.
 const FIRST_BUILD: u8 = b'B';
 

@@ -26,7 +26,9 @@ fn UARTE0_UART0() {
         let Ok(mut port) = PORT.borrow(section).try_borrow_mut() else { return };
         // The first call takes the byte, or an error. The second one asks for the next byte.
         for _ in 0..2 {
-            if let Some(Ok(byte)) = port.as_mut().map(Read::read) {
+            if let Some(Ok(byte)) = port.as_mut().map(Read::read)
+                && crate::serial::is_whole()
+            {
                 uart_rx::push(byte);
             }
         }

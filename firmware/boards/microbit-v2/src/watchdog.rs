@@ -1,6 +1,6 @@
 //! The watchdog.
 
-use crate::nrf_hal::pac::WDT;
+use crate::nrf_hal::pac::{POWER, WDT};
 use crate::nrf_hal::wdt::count::One;
 use crate::nrf_hal::wdt::handles::Hdl0;
 use crate::nrf_hal::wdt::{Parts, Watchdog, WatchdogHandle};
@@ -9,6 +9,14 @@ use crate::nrf_hal::wdt::{Parts, Watchdog, WatchdogHandle};
 const CLOCK_HZ: u32 = 32_768;
 /// The watchdog resets the board when the program hangs for this time.
 const WATCHDOG_S: u32 = 2;
+
+/// Returns whether the watchdog has reset the board, and forgets it.
+pub fn has_reset(power: &POWER) -> bool {
+    let reasons = power.resetreas.read();
+    // A written 1 clears a reason.
+    power.resetreas.write(|w| w.dog().detected());
+    reasons.dog().is_detected()
+}
 
 /// Starts the watchdog, or takes over one that runs, since it cannot be stopped, and returns what feeds it. If another program set it up
 /// otherwise, nothing does.

@@ -19,7 +19,11 @@ fn set_up() -> impl PanicBoard<Mono128x64> {
     // Safety: the code that had the peripherals does not run any more.
     let parts = unsafe { Peripherals::steal() };
     let p0 = p0::Parts::new(parts.P0);
-    let display =
-        oled::new(parts.TWIM0, p0.p0_27.into_floating_input().degrade(), p0.p0_26.into_floating_input().degrade(), |_| {});
+    let display = oled::new(
+        parts.TWIM0,
+        p0.p0_27.into_floating_input().degrade(),
+        p0.p0_26.into_floating_input().degrade(),
+        &mut |_, _| {},
+    );
     (display, watchdog::start(parts.WDT))
 }

@@ -3,9 +3,7 @@
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
-#[cfg(not(feature = "spi"))]
-use board_common::report_bus;
-use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
+use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
 #[cfg(not(feature = "spi"))]
 use board_drivers::{Heartbeat, Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
@@ -41,6 +39,7 @@ fn USART2() {
 pub fn new(
     parts: Peripherals,
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
+    let by_watchdog = crate::watchdog::has_reset(&parts.RCC);
     let mut clocks = parts.RCC.freeze(rcc::Config::hsi().sysclk(CPU_HZ.Hz()));
     let mut watchdog = crate::watchdog::start(parts.IWDG, &parts.DBGMCU);
     let (a, b, c) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks), parts.GPIOC.split(&mut clocks));
@@ -50,13 +49,12 @@ pub fn new(
     };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
-    #[cfg_attr(feature = "spi", allow(unused_mut))]
     let mut serial = NbSerial(serial);
+    report_restart(&mut serial, by_watchdog);
     #[cfg(not(feature = "spi"))]
     let display = {
-        // Without a display, the pull-ups keep the bus idle. The pins are D15 and D14.
-        let mut bus = parts.I2C1.i2c((b.pb8.internal_pull_up(true), b.pb9.internal_pull_up(true)), 400.kHz(), &mut clocks);
-        report_bus(&mut serial, &mut bus);
+        // D15 and D14.
+        let bus = crate::i2c::new(parts.I2C1, b.pb8, b.pb9, &mut clocks, &mut serial);
         let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
         // The board's own LED, whose pin is the clock of displays over SPI.
         Heartbeat::new(display, a.pa5.into_push_pull_output())

@@ -4,6 +4,9 @@
 
 #[path = "../../blackpill/src/flash.rs"]
 mod flash;
+#[cfg(not(feature = "spi"))]
+#[path = "../../blackpill/src/i2c.rs"]
+mod i2c;
 #[path = "../../blackpill/src/panic.rs"]
 mod panic;
 #[cfg(feature = "spi")]

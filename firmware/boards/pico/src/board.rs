@@ -2,6 +2,8 @@
 
 use crate::clocks::{self, CPU_HZ};
 use crate::rp_hal::fugit::{ExtU32, RateExtU32};
+#[cfg(not(feature = "spi"))]
+use crate::rp_hal::gpio::InOutPin;
 use crate::rp_hal::gpio::{Pins, PullUp};
 use crate::rp_hal::pac::Peripherals;
 use crate::rp_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
@@ -11,8 +13,10 @@ use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
 #[cfg(not(feature = "spi"))]
 use board_common::report_bus;
-use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
+use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
 use board_drivers::Heartbeat;
+#[cfg(not(feature = "spi"))]
+use board_drivers::i2c_wires::free_wires;
 #[cfg(not(feature = "spi"))]
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
@@ -27,6 +31,7 @@ pub fn new(
     parts: Peripherals,
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
     let mut resets = parts.RESETS;
+    let by_watchdog = parts.WATCHDOG.reason().read().timer().bit_is_set();
     let mut watchdog = Watchdog::new(parts.WATCHDOG);
     let usb_clock = clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
     // Before all that can hang, but after the clocks, which it needs.
@@ -40,14 +45,17 @@ pub fn new(
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
-    #[cfg_attr(feature = "spi", allow(unused_mut))]
     let mut serial = NbSerial(serial);
+    report_restart(&mut serial, by_watchdog);
     #[cfg(not(feature = "spi"))]
     let display = {
-        let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
+        let (sda, scl) = (pins.gpio4.into_pull_up_input(), pins.gpio5.into_pull_up_input());
+        let (mut sda, mut scl) = (InOutPin::new(sda), InOutPin::new(scl));
+        let wires = free_wires(&mut scl, &mut sda, || cortex_m::asm::delay(CPU_HZ / 200_000));
+        let (sda, scl) = (sda.release().reconfigure(), scl.release().reconfigure());
         let bus = crate::rp_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
         let mut bus = crate::i2c::Bus::new(bus);
-        report_bus(&mut serial, &mut bus);
+        report_bus(&mut serial, wires, &mut bus);
         let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
         new(bus)
     };

@@ -21,6 +21,9 @@ use rp2040_hal as rp_hal;
 
 /// The clock of the processor and the peripherals.
 pub const CPU_HZ: u32 = 125_000_000;
+/// The clock of a display over SPI is a quarter of it, which jumper wires carry. With the feature `fast` it is half of it, 62.5 MHz, the displays' limit.
+#[cfg(feature = "spi")]
+const SPI_DIVIDER: u32 = if cfg!(feature = "fast") { 2 } else { 4 };
 /// The PC's name for the board.
 #[cfg(feature = "usb")]
 const PRODUCT: &str = "Pantin on the Raspberry Pi Pico";

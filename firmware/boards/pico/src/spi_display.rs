@@ -1,5 +1,6 @@
 //! A display over SPI: clock on GP18, data on GP19, chip select on GP17, data/command on GP20, reset on GP21.
 
+use crate::SPI_DIVIDER;
 use crate::clocks::CPU_HZ;
 use crate::rp_hal::Spi;
 use crate::rp_hal::fugit::RateExtU32;
@@ -24,8 +25,9 @@ pub type Picture = chosen::Colour;
 /// The layout of the panic screen: after a panic there may be no RAM for a second picture in colour.
 pub type PanicPicture = chosen::Mono;
 
-/// The clock of the bus: a quarter of the chip's, which jumper wires carry. With the feature `fast` it is half of the chip's, the fastest.
-const SPI_HZ: u32 = CPU_HZ / if cfg!(feature = "fast") { 2 } else { 4 };
+/// The clock of the bus.
+const SPI_HZ: u32 = CPU_HZ / SPI_DIVIDER;
+const _: () = assert!(SPI_HZ <= 62_500_000, "the displays' limit");
 
 /// A pin after reset.
 type Free<I> = Pin<I, FunctionNull, PullDown>;

@@ -25,6 +25,9 @@ use rp235x_hal as rp_hal;
 
 /// The clock of the processor and the peripherals.
 pub const CPU_HZ: u32 = 150_000_000;
+/// The clock of a display over SPI is a quarter of it: half of it, 75 MHz, is above the displays' limit.
+#[cfg(feature = "spi")]
+const SPI_DIVIDER: u32 = 4;
 /// The PC's name for the board.
 #[cfg(feature = "usb")]
 const PRODUCT: &str = "Pantin on the Raspberry Pi Pico 2";

@@ -2,6 +2,7 @@
 
 mod faults;
 mod guard;
+pub(crate) mod kept;
 mod systick;
 
 pub use guard::guard_stack;
