@@ -28,6 +28,14 @@ pub const SCRIPTS: [(&str, &[&str]); 11] = [
 pub const DECODER: [&str; 5] =
     ["decoder/tables.js", "decoder/names.js", "decoder/clip.js", "decoder/pose.js", "decoder/index.js"];
 
+/// The modules of the minified build of rotations.
+const TURNS: [&str; 2] = ["decoder/turning.js", "decoder/turns.js"];
+
+/// The minified build of rotations.
+pub fn turns() -> Result<Vec<u8>> {
+    tools::minified(bundle(&paths::root().join("web/packages"), &TURNS)?.into_bytes())
+}
+
 /// The decoder's minified build.
 pub fn decoder() -> Result<Vec<u8>> {
     tools::minified(bundle(&paths::root().join("web/packages"), &DECODER)?.into_bytes())
