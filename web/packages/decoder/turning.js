@@ -1,5 +1,5 @@
 // Rotations in integers, with the same bits as the decoder in Rust, whose modules turn.rs and trig.rs state each step: what turns.js and the element's animator share.
-const { abs, clz32, floor, imul, max, min, round } = Math;
+export const { abs, clz32, floor, imul, max, min, round } = Math;
 const HALF_TURN = 2 ** 31;
 const ONE = 2 ** 30;
 const SINE = [4941520, 85555982, 693598003, 1686629708];
