@@ -185,7 +185,7 @@ fn the_element_draws_the_strokes_of_the_firmware() {
     clips.sort();
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/lines.mjs")).arg(&MODULES.1[0]);
-    let output = node.args(clips).output().unwrap();
+    let output = node.args(clips).arg(own("character.ptb")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));
 }
