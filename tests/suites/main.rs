@@ -1,5 +1,6 @@
 //! The suites that need more than one crate, one module each: on the host, in QEMU, in a Pico's emulator and in Chromium.
 
+mod animator;
 mod conformance;
 mod differential;
 mod display;

@@ -26,12 +26,14 @@ static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
     (Browser::ready().unwrap(), web::served(extras).unwrap())
 });
 
-/// The firmware's face code as a module, in a folder of its own.
-static FACE_MODULE: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
+/// The firmware's code as modules, in a folder of their own: decoder, figure and animator, and the face.
+static MODULES: LazyLock<(TempDir, [PathBuf; 2])> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let module = folder.path().join("face.wasm");
-    std::fs::write(&module, web::face_module().unwrap()).unwrap();
-    (folder, module)
+    let paths = ["player.wasm", "face.wasm"].map(|name| folder.path().join(name));
+    for (path, module) in paths.iter().zip([web::player_module(), web::face_module()]) {
+        std::fs::write(path, module.unwrap()).unwrap();
+    }
+    (folder, paths)
 });
 
 /// Captured figures of different makers.
@@ -152,23 +154,21 @@ fn the_modules_stand_whatever_bytes_they_get() {
     if skipped("the player's modules") {
         return;
     }
-    let character = paths::root().join("target/web").join(web::CHARACTER[0]);
-    assert!(!STAGE.1.is_empty(), "it was built");
-    let modules = [&character, &*FACE_MODULE.1, &character];
     let mut node = Command::new(setup::emulator("node").unwrap());
-    node.arg(paths::root().join("tests/web/module.mjs")).args(modules).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
+    node.arg(paths::root().join("tests/web/module.mjs"))
+        .args(&MODULES.1)
+        .args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
     let output = node.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));
 }
 
-/// The element's decoder and figure are JavaScript; the firmware's are in the character's module.
+/// The element's decoder and figure are JavaScript; the firmware's are in a module.
 #[test]
 fn the_element_draws_the_strokes_of_the_firmware() {
     if skipped("the element's figure") {
         return;
     }
-    assert!(!STAGE.1.is_empty(), "the module was built");
     let folder = tempfile::tempdir().unwrap();
     let mut clips: Vec<PathBuf> = ["walk.ptn", "run.ptn", "greet.ptn", "kneebend.ptn"].map(own).into();
     let vectors = std::fs::read_dir(paths::root().join("tests/vectors")).unwrap().map(|entry| entry.unwrap().path());
@@ -184,8 +184,8 @@ fn the_element_draws_the_strokes_of_the_firmware() {
     }
     clips.sort();
     let mut node = Command::new(setup::emulator("node").unwrap());
-    node.arg(paths::root().join("tests/web/lines.mjs")).arg(paths::root().join("target/web").join(web::CHARACTER[0]));
-    let output = node.args(clips).output().unwrap();
+    node.arg(paths::root().join("tests/web/lines.mjs")).arg(&MODULES.1[0]);
+    let output = node.args(clips).arg(own("character.ptb")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));
 }
@@ -236,7 +236,7 @@ fn the_element_draws_the_lines_of_the_firmwares_face() {
     }
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/faces.mjs"))
-        .arg(&FACE_MODULE.1)
+        .arg(&MODULES.1[1])
         .arg(paths::root().join("target/web").join(web::FACE[0]));
     let output = node.args(clips).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

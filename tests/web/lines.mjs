@@ -1,9 +1,12 @@
-// The element's figure code beside the firmware's: `node lines.mjs MODULE.wasm CLIP...`. Over clips, frames and views, in pictures of several sizes, poses and
-// strokes are equal to the last bit.
+// The element's figure code beside the firmware's: `node lines.mjs MODULE.wasm CLIP... CHARACTER.ptb`. Over clips, frames and views, in pictures of several sizes, poses
+// and strokes are equal to the last bit, also those of a character that travels.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { openClip, openRig } from "../../web/packages/decoder/index.js";
-import { figureOf, visitor } from "../../web/packages/player/figure.js";
+import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/decoder/clip.js";
+import { openClip } from "../../web/packages/decoder/index.js";
+import { bankOf } from "../../web/packages/player/bank.js";
+import { steer } from "../../web/packages/player/character.js";
+import { figureOf, maths, visitor } from "../../web/packages/player/figure.js";
 
 const SIZES = [[128, 64], [320, 160], [640, 320], [390, 700]];
 // Orbit, tilt, whether the camera follows the figure, and the axis that is up in place of the rig's.
@@ -12,15 +15,20 @@ const STROKE = 12;
 const [CHANNELS, POSE] = [5, 13];
 
 const [, , module, ...clips] = process.argv;
+const character = clips.pop();
 const wasm = new WebAssembly.Instance(new WebAssembly.Module(readFileSync(module))).exports;
 const slot = (wasm.base() + 15) & -16;
 const file = slot + ((wasm.slot() + 15) & -16);
 
-function opened(bytes) {
+function put(bytes) {
   const missing = file + bytes.length - wasm.memory.buffer.byteLength;
   if (missing > 0) wasm.memory.grow(Math.ceil(missing / 65536));
   new Uint8Array(wasm.memory.buffer, file).set(bytes);
   wasm.start(slot);
+}
+
+function opened(bytes) {
+  put(bytes);
   wasm.arrived(slot, file, bytes.length);
   return wasm.finish(slot);
 }
@@ -72,4 +80,37 @@ for (const clip of clips) {
     }
   }
 }
-console.log(JSON.stringify(summary));
+
+// The character's inputs are fired one after the other while it walks on and off.
+const bytes = readFileSync(character);
+put(bytes);
+assert.equal(wasm.machine(slot, file, bytes.length), 0);
+const player = { draw() {}, dispatchEvent() {} };
+const actor = steer(bankOf(bytes, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]), player);
+const states = new Set();
+let turn = 0;
+const pass = (time) => {
+  assert.equal(player.states[wasm.update(slot, time) & 255], (actor.pass(time), player.state));
+  states.add(player.state);
+};
+pass(0);
+for (const [width, height] of SIZES) {
+  for (const [orbit, tilt, isFollowing, axis] of VIEWS) {
+    assert.equal(wasm.aim(slot, width, height, orbit, tilt, +!isFollowing + 2 * (axis === undefined ? 0 : axis + 1)), 0);
+    actor.aim(width, height, orbit, tilt, isFollowing, axis);
+    for (let picture = 0; picture < 60; picture++, turn++) {
+      const act = (name, what) => (wasm.input(slot, player.inputs.indexOf(name), what), actor.input(name, what));
+      if (turn % 400 === 0) act("go", 1);
+      if (turn % 400 === 200) act("go", 0);
+      if (turn % 31 === 0) act(player.inputs[(turn / 31) % player.inputs.length], 2);
+      pass(33333 + (turn % 7) * 5000);
+      const own = [];
+      actor.each((...stroke) => own.push(stroke));
+      assert.deepEqual(own, expected(), `${character} picture ${turn}, ${width}x${height}, view ${[orbit, tilt, isFollowing, axis]}`);
+      summary.pictures++;
+      summary.lines += own.length;
+    }
+  }
+}
+assert.ok(states.size > 10, `${states.size} states`);
+console.log(JSON.stringify({ ...summary, states: states.size }));

@@ -1,10 +1,10 @@
-// The player's modules alone, in node: `node module.mjs PLAYER FACE CHARACTER CLIP...`. Whatever bytes they get, they answer and go on; however these come, the frames
+// The firmware's modules alone, in node: `node module.mjs PLAYER FACE CLIP...`. Whatever bytes they get, they answer and go on; however these come, the frames
 // are the same.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 
-const [, , player, facial, character, ...clips] = process.argv;
-const [module, faces, more] = [player, facial, character].map((path) => new WebAssembly.Module(readFileSync(path)));
+const [, , player, facial, ...clips] = process.argv;
+const [module, faces] = [player, facial].map((path) => new WebAssembly.Module(readFileSync(path)));
 const [OLED, TRUNCATED] = [[128, 64, -50, 12], 3];
 // Places of what is known of a clip.
 const [PLAYABLE, CHANNELS, SCALARS, SCALARS_AT, SCALARS_LENGTH, POSE] = [1, 5, 10, 11, 12, 13];
@@ -118,8 +118,6 @@ for (const clip of clips) {
 // Nothing, and tables that end early.
 const { slot } = fed(new Uint8Array(), 1, false);
 assert.equal(wasm.finish(slot), TRUNCATED);
-const tables = shared(more);
-const [table, file] = [tables.take(tables.slot()), tables.take(FILE)];
-tables.start(table);
-assert.notEqual(tables.poses(table, file, FILE, 4, 1e9, 1, 0), 0);
+wasm.start(SLOT);
+assert.notEqual(wasm.poses(SLOT, files[0], FILE, 4, 1e9, 1, 0), 0);
 console.log(JSON.stringify({ runs, troubles: [...troubles] }));

@@ -12,9 +12,8 @@ import { firefox } from "./firefox.mjs";
 
 const { chromium } = createRequire(`${process.env.PLAYWRIGHT}/`)("playwright-core");
 const CLIPS = process.argv[2];
-// A clip of each module: of a body, of a face beside it, and a character.
+// A clip of each kind: of a body, of a face beside it, and a character.
 const [BODY, FACE, CHARACTER] = ["walk.ptn", "greet.ptn", "character.ptb"];
-const MODULES = ["pantin-character.wasm"];
 const player = resolve("node_modules/@pantin/player");
 // All of it is served below this folder.
 const site = resolve("site");
@@ -38,8 +37,6 @@ await new Promise((done, failed) => webpack({
 
 put("in/esbuild", "main.js");
 await esbuild({ entryPoints: ["main.ts"], bundle: true, minify: true, format: "esm", outdir: join(site, "in/esbuild"), logLevel: "error" });
-// As the package's README says.
-MODULES.forEach((name) => copyFileSync(join(player, name), join(site, "in/esbuild", name)));
 
 put("in/plain", "pantin-player.js");
 cpSync(player, join(site, "in/plain"), { recursive: true });

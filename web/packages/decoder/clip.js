@@ -47,14 +47,14 @@ const crc16 = (bytes, crc = 0xffff) => {
 };
 const isWhole = (bytes, crc) => bytes.length > 1 && crc16(bytes.subarray(0, -2), crc) === crcOf(bytes);
 // The bytes before the checksum at their end, once that is known to be right.
-const checked = (bytes, crc) => {
+export const checked = (bytes, crc) => {
   check(isWhole(bytes, crc), "wrong checksum");
   return bytes.subarray(0, -2);
 };
 const crcOf = (bytes) => bytes.at(-2) + 256 * bytes.at(-1);
 
 // Fields, one after the other. Those of a payload read zeros past its end [3].
-const fieldsOf = (bytes, isPayload) => {
+export const fieldsOf = (bytes, isPayload) => {
   let at = 0;
   const more = () => at < bytes.length;
   const u8 = () => {
@@ -396,7 +396,7 @@ const play = (clip, poseOf, payload, at, isPartial) => {
   };
 
   const player = {
-    ...poseOf?.(clip, raw),
+    ...poseOf?.(clip, raw, state, channels),
     clip, raw, step, seek,
     moving: channels.length,
     get frame() {

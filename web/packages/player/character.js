@@ -1,105 +1,115 @@
-// What <pantin-player> loads for a bank: its clips, and what steers its state machine.
-import { bytes, open, seat, strokes } from "./wasm.js";
+// What <pantin-player> loads for a bank with a state machine: what steers it, and its figure where that stands.
+import { min, round } from "../decoder/turning.js";
+import { clamp, wide } from "./channels.js";
+import { isAlike } from "./animator.js";
+import { characterOf } from "./machine.js";
+import { tableOf } from "./machine-table.js";
 
-const FACTS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars"];
-// Where the facts have the event, or the name, that was asked for: its frame, id, address and length.
-const EVENT = 14;
+const FAULT = "the bank contradicts itself";
+// 71 minutes.
+const LONGEST_TIME = 2 ** 32 - 1;
+// Places farther than this, in a figure's own unit, are cut off.
+const FAR = 2n ** 30n;
+// Where the figure's inner parts have its rotations, and the exponent of its unit less that of its clip.
+const TURNS = 5;
+const SHIFT = 15;
 
-// The clips of a bank (decoder/FORMAT.md 16): their names, whether there is a state machine, and a clip's file with its rig.
-export function bankOf(file) {
-  let at = 3;
-  const number = () => {
-    for (let value = 0, shift = 0; shift < 35; shift += 7) {
-      if (at >= file.length) break;
-      const byte = file[at++];
-      value += (byte & 127) * 2 ** shift;
-      if (byte < 128) return value;
-    }
-    throw new Error("the bank ends early");
+// The character of a bank. Throws an Error if its state machine, or a clip of it, is no good.
+export function opened({ clips, machine, rig, tools: [, checked, , openRawClip] }) {
+  const poseOf = (_, __, state, channels) => ({ state, channels });
+  return characterOf(rig, tableOf(checked(machine), clips.length), (index) => {
+    const clip = openRawClip(clips[index], rig, false, { poseOf });
+    if (clip.rig !== rig) throw new Error("pantin: out of bounds");
+    return clip;
+  });
+}
+
+// Where a figure stands, for `place` of figure.js. Of the figure's rotations, the last is the view's.
+function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {
+  const offset = [0, 0, 0];
+  const turned = (angle, v) => {
+    const turn = [32768, 0, 0, 0, 32768, 0, 0, 0, 32768];
+    turnAbout(turn, 0, axis, angle);
+    return imageOf(turn, v);
   };
-  const take = (length) => {
-    if (at + length > file.length) throw new Error("the bank ends early");
-    return file.subarray(at, (at += length));
-  };
-  const sections = {};
-  while (at < file.length) sections[file[at++]] = take(number());
-  const [rig, contents, clips] = [1, 2, 3].map((kind) => sections[kind]);
-  if (!rig || !contents || !clips) throw new Error("the bank ends early");
-  const found = [];
-  let next = 0;
-  file = contents;
-  // The last two bytes are a checksum; each clip has its own.
-  for (at = 0; at < contents.length - 2; ) {
-    const name = new TextDecoder().decode(take(number()));
-    const length = number();
-    found.push({ name, file: clips.subarray(next, (next += length)) });
-  }
-  const names = found.map(({ name }) => name);
-  return {
-    names,
-    // A fourth section is a state machine.
-    machine: !!sections[4],
-    // The clip that was asked for, or the first.
-    clip(name) {
-      const clip = name === null ? found[0] : found.find((clip) => clip.name === name);
-      if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names.join(", ")}`);
-      return [clip.file, rig];
-    },
+  place.forEach((x, index) => (offset[(axis + 1 + index) % 3] = Number(clamp(shift < 0 ? wide(x << BigInt(-shift)) : x >> BigInt(min(shift, 63)), -FAR, FAR))));
+  return (v, isBack) => {
+    if (!isBack) return turned(heading, v).map((x, index) => (x + offset[index]) | 0);
+    turnAbout(turns, turns.length - 9, axis, heading);
+    return turned(-heading | 0, v.map((x, index) => (x - offset[index]) | 0));
   };
 }
 
-// Steers the state machine of a bank for a player, which gets its names.
-export async function steer(player, file, shown, dispatch) {
-  const wasm = await open(new URL("./pantin-character.wasm", import.meta.url));
-  const actor = {};
-  const { take, close } = seat(wasm, actor);
-  const at = take(wasm.slot());
-  const place = take(file.length);
-  wasm.start(at);
-  bytes(wasm, place, file.length).set(file);
-  if (wasm.machine(at, place, file.length)) {
-    close();
-    throw new Error("the bank contradicts itself");
+// Lets a player steer the state machine of a bank: it gets its names and its events.
+export function steer(bank, player) {
+  const { rig, tools: [, , , , figureOf, maths] } = bank;
+  let character;
+  try {
+    character = opened(bank);
+  } catch {
+    throw new Error(FAULT);
   }
-  const facts = () => new Uint32Array(wasm.memory.buffer, wasm.facts(at), EVENT + 4);
-  const event = () => {
-    const [frame, id, from, length] = facts().subarray(EVENT);
-    return { frame, id, name: new TextDecoder().decode(bytes(wasm, from, length)) };
+  const { animator, initial } = character;
+  const [states, parameters, inputs] = character.names;
+  const axis = rig.up.findIndex(Boolean);
+  let figure, form, view, poses;
+  const dispatch = (name, detail) => player.dispatchEvent(new CustomEvent(name, { detail }));
+  const stand = () => {
+    const { clip } = animator.track;
+    // Clips of another form are drawn by a figure of theirs.
+    if (!isAlike(form, clip)) return aim(...view);
+    const inner = figure.inner();
+    figure.place(animator.pose, standOf(animator.placement, axis, inner[SHIFT], inner[TURNS], maths));
   };
-  const names = (kind) => {
-    const found = [];
-    while (wasm.name(at, kind, found.length)) found.push(event().name);
-    return found;
+  const aim = (...wanted) => {
+    const { clip } = animator.track;
+    view = wanted;
+    if (!figure || !isAlike(form, clip)) figure = figureOf(clip, animator.pose);
+    form = clip;
+    poses ??= [...character.poses()];
+    figure.aim(...view, (visit) => poses.forEach(visit));
+    stand();
   };
-  const [states, inputs, parameters] = [0, 1, 2].map(names);
-  Object.assign(player, { states, inputs });
-  player.parameters = parameters.map((name, index) => ({ name, range: [0, 1].map((which) => wasm.range(at, index, which)), value: wasm.range(at, index, 2) }));
-  return Object.defineProperties(Object.assign(actor, {
-    close,
-    aim: (width, height, orbit, tilt, isFollowing, axis) => wasm.aim(at, width, height, orbit, tilt, +!isFollowing + (axis === undefined ? 0 : 2 * axis + 2)),
-    each: (stroke) => strokes(wasm, wasm.picture(), wasm.strokes(at), stroke),
-    // Lets time pass, in microseconds.
+  player.states = states;
+  player.inputs = inputs;
+  player.parameters = parameters.map((name, index) => {
+    const [low, high, value] = character.parameters[index];
+    return { name, range: [low, high], value };
+  });
+  return {
+    aim,
+    each: (stroke) => figure?.each(stroke),
+    facts: {
+      frames: 1, playable: 1, frame: 0, frameTime: initial.frameTimeNs, looped: 0, channels: rig.channels, moving: 0, rigBytes: 0, motionBytes: 0, joints: rig.joints.length,
+      scalars: rig.scalars.length,
+    },
+    // Lets time pass, in microseconds. A clip that is no good is not played: the state before goes on.
     pass(time) {
-      const name = states[wasm.update(at, time) & 255];
-      shown();
-      for (let index = 0; wasm.passed(at, index); index += 1) dispatch("heard", event());
+      try {
+        character.update(clamp(time, 0, LONGEST_TIME) || 0);
+      } catch {}
+      const name = states[character.state];
+      if (figure) stand();
+      player.draw();
+      for (const event of animator.events) dispatch("heard", event);
       if (name === player.state) return;
       player.state = name;
       dispatch("state", name);
     },
-    // Fires an input (2), holds it down (1) or lets it go (0).
+    // Fires an input (2), holds it down (1) or lets it go (0). Without it, a RangeError.
     input(name, what) {
       const index = inputs.indexOf(name);
       if (index < 0) throw new RangeError(`the state machine has no input ${name}; it has ${inputs.join(", ") || "none"}`);
-      wasm.input(at, index, what);
+      if (what > 1) character.fire(index);
+      else character.hold(index, what);
     },
     set(name, value) {
-      const index = player.parameters.findIndex((parameter) => parameter.name === name);
+      const index = parameters.indexOf(name);
       if (index < 0) throw new RangeError(`the state machine has no parameter ${name}`);
       const parameter = player.parameters[index];
-      const [least, most] = parameter.range;
-      parameter.value = Math.max(least, Math.min(most, Math.round(value)));
-      wasm.set(at, index, parameter.value);
+      const [low, high] = parameter.range;
+      parameter.value = clamp(round(value) || 0, low, high);
+      character.set(index, parameter.value);
     },
-  }), { facts: { get: () => Object.fromEntries(FACTS.map((name, index) => [name, facts()[index]])) } });
+  };
 }

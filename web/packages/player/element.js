@@ -1,6 +1,6 @@
 // <pantin-player src="walk.ptn" autoplay loop></pantin-player>: plays a clip while its bytes arrive, as a media element does. docs/WEB.md lists its attributes,
 // properties, methods and events. The build puts decoder and figure into one file with it; other parts are modules, fetched at their first use.
-import { openRawClip, openRawRig } from "@pantin/decoder/clip.js";
+import { checked, fieldsOf, openRawClip, openRawRig } from "@pantin/decoder/clip.js";
 import { figureOf, maths, visitor } from "./figure.js";
 
 // Bytes of a file that is not shown before all of it has arrived.
@@ -241,8 +241,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     };
   }
   get frames() { return this.#actor ? 1 : (this.#clip?.frames ?? 0); }
-  get playable() { return this.#actor ? 1 : this.#playable; }
-  get frame() { return (this.#actor ? 0 : this.#player?.frame) ?? 0; }
+  get playable() { return this.#playable; }
+  get frame() { return this.#player?.frame ?? 0; }
   get paused() { return this.#paused; }
   get ended() { return this.#ended; }
   get seeking() { return !!this.#wanted && !!this.#abort && !this.#abort.done; }
@@ -307,7 +307,6 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const wanted = !this.#paused && !had;
     // Who asked to play before there was a clip gets the next one.
     if (!wanted) this.pause();
-    this.#actor?.close();
     this.#clip = this.#player = this.#figure = this.#face = this.#actor = this.#abort = this.#lazy = null;
     this.#playable = this.#at = this.#surveyed = 0;
     this.#isWhole = this.#ended = false;
@@ -348,13 +347,12 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.received = file.length;
     let rig;
     if (file[0] === 80 && file[1] === 98) {
-      const { bankOf, steer } = await import("./pantin-character.js");
+      const { bankOf } = await import("./pantin-bank.js");
       signal.throwIfAborted();
-      const bank = bankOf(file);
+      const bank = bankOf(file, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]);
       this.clips = bank.names;
-      if (bank.machine && name === null) return this.#steer(await steer(this, file, () => this.#shown(), (event, detail) => this.#dispatch(event, detail)), signal);
+      if (bank.machine && name === null) return this.#steer(await bank.steer(this), signal);
       [file, rig] = bank.clip(name);
-      rig = openRawRig(rig);
     }
     this.total ||= this.received;
     const problem = await this.#open(file, rig, signal);
@@ -412,6 +410,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #steer(actor, signal) {
     signal.throwIfAborted();
     this.#actor = actor;
+    this.#playable = 1;
     this.total = this.received;
     actor.pass(0);
     this.#aim();

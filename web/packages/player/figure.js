@@ -314,11 +314,12 @@ export const figureOf = (clip, raw) => {
   };
   let viewRows;
   let zoomOfCrown = 0;
-  const place = (raw) => {
+  // `stand` makes a place of a figure that stands elsewhere one in the world, or with `true`, after it has turned the view as that figure sees it, the reverse.
+  const place = (raw, stand = (there) => there) => {
     inWorld(raw, [0, 0, 0], hips + 1);
-    target = axes((axis) => fixed[axis] ?? places[3 * hips + axis]);
+    target = stand(at(hips)).map((x, axis) => fixed[axis] ?? x);
     turns.set(view, VIEW);
-    placeIn(raw, target);
+    placeIn(raw, stand(target, true));
     for (let index = 0; index < count; index++) {
       const zoom = project(places[3 * index], places[3 * index + 1], places[3 * index + 2], points, 3 * index);
       if (index === crown) zoomOfCrown = zoom;
@@ -335,7 +336,7 @@ export const figureOf = (clip, raw) => {
   const figure = {
     place,
     // What another look of the figure is made of, in a row: names of properties take bytes that lines need not have.
-    inner: () => [bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target],
+    inner: () => [bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target, positionShift],
     // Degrees; `upAxis` takes the place of the axis that the rig states. A camera that does not follow the figure stands still. `cover` passes circles for which it
     // makes room in place of the head's.
     aim(width, rows, orbit, tilt, isFollowing, upAxis, visit, cover) {

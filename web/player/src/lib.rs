@@ -1,4 +1,4 @@
-//! Plays clips in a web page. One instance of this module plays all clips of a page: each has a slot and a file in memory that the page divides.
+//! Plays clips as the firmware does, in WebAssembly: what tests compare the element's JavaScript with. One instance of this module plays all clips: each has a slot and a file in memory that the caller divides.
 //!
 //! ```text
 //! base()                     -> the first address of the page's memory, all of which it divides and has grown itself

@@ -11,7 +11,7 @@ use crate::{inline, script, tools};
 /// A module that the build writes: the face's model as a text.
 const FACE_MODEL: &str = "player/face-model.js";
 /// The modules of each script of the player, below `web/packages`. The last one keeps its exports.
-pub const SCRIPTS: [(&str, &[&str]); 11] = [
+pub const SCRIPTS: [(&str, &[&str]); 12] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
     ("pantin-stream.js", &["player/stream.js"]),
@@ -22,11 +22,32 @@ pub const SCRIPTS: [(&str, &[&str]); 11] = [
     ("pantin-table.js", &["player/table.js"]),
     ("pantin-face.js", &["decoder/names.js", FACE_MODEL, "player/face-lines.js", "player/face.js"]),
     ("pantin-bars.js", &["player/bars.js"]),
-    ("pantin-character.js", &["player/wasm.js", "player/character.js"]),
+    ("pantin-bank.js", &["player/bank.js"]),
+    (
+        "pantin-character.js",
+        &[
+            "decoder/turning.js",
+            "player/channels.js",
+            "player/track.js",
+            "player/animator.js",
+            "player/gait.js",
+            "player/machine-table.js",
+            "player/machine.js",
+            "player/character.js",
+        ],
+    ),
 ];
 /// The modules of the decoder's minified build.
 pub const DECODER: [&str; 5] =
     ["decoder/tables.js", "decoder/names.js", "decoder/clip.js", "decoder/pose.js", "decoder/index.js"];
+
+/// The modules of the minified build of rotations.
+const TURNS: [&str; 2] = ["decoder/turning.js", "decoder/turns.js"];
+
+/// The minified build of rotations.
+pub fn turns() -> Result<Vec<u8>> {
+    tools::minified(bundle(&paths::root().join("web/packages"), &TURNS)?.into_bytes())
+}
 
 /// The decoder's minified build.
 pub fn decoder() -> Result<Vec<u8>> {

@@ -63,7 +63,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
                 "decoder.min.js" => bundle::decoder()?,
-                "turns.min.js" => tools::minified(read(&source.join("turns.js"))?)?,
+                "turns.min.js" => bundle::turns()?,
                 name if [&PLAYER[..], &OTHERS, &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?
                 }

@@ -18,12 +18,11 @@ use crate::{bundle, inline, pack, script, tools};
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
-/// For the smallest player: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
+/// For small modules: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
 const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
 
-/// The modules' packages and features, the profiles that they are built in, and their names in the site.
-pub const MODULES: [(&str, &str, &str, &str); 2] =
-    [("pantin-web-player", "character,poses", "release", CHARACTER[0]), ("pantin-web-converter", "", "converter", CONVERTER[1])];
+/// The converter's package, the profile that it is built in, and its name in the site.
+const MODULE: (&str, &str, &str) = ("pantin-web-converter", "converter", CONVERTER[1]);
 
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {
@@ -49,8 +48,8 @@ pub const OTHERS: [&str; 7] = [
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.js"];
-/// What it loads too for a bank; the module for one with a state machine.
-pub const CHARACTER: [&str; 2] = ["pantin-character.wasm", "pantin-character.js"];
+/// What it loads too for a bank, and for one with a state machine.
+pub const CHARACTER: [&str; 2] = ["pantin-bank.js", "pantin-character.js"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
@@ -59,9 +58,8 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
-    for (package, features, profile, name) in MODULES {
-        write(&out.join(name), &module(package, features, profile)?)?;
-    }
+    let (package, profile, name) = MODULE;
+    write(&out.join(name), &module(package, "", profile)?)?;
     let page = listed(&paths::root().join("web/page"))?;
     let packages = paths::root().join("web/packages");
     for (name, modules) in bundle::SCRIPTS {
@@ -89,6 +87,12 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
 pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
     let bytes = |name| std::fs::metadata(out.join(name)).ok().map(|file| file.len() as usize);
     names.iter().filter_map(|name| Some(Size { name, bytes: bytes(name)? })).collect()
+}
+
+/// The firmware's decoder, figure and animator as a module, with which tests compare the element's own.
+pub fn player_module() -> Result<Vec<u8>> {
+    setup::rust_target(TARGET)?;
+    module("pantin-web-player", "character,poses", "release")
 }
 
 /// The firmware's face code as a module, with which tests compare what draws faces here.

@@ -1,15 +1,13 @@
 //! The animator in C: poses, placements and events of the crate pantin-animator, at every frame.
 
-mod reference;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use harness::animator::{self as reference, Sequence};
 use harness::{paths, vectors};
 use pantin::Clip;
 use pantin_animator::machine::Table;
-use reference::Sequence;
 use tempfile::TempDir;
 
 use super::face::same;

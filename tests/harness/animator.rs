@@ -1,4 +1,4 @@
-//! Scripts for animators and state machines, and what the crate pantin-animator makes of them: as `bindings/c/tests/animator.c` prints it.
+//! Scripts for animators and state machines, and what the crate pantin-animator makes of them: as `bindings/c/tests/animator.c` and `tests/web/animator.mjs` print it.
 
 use std::fmt::Write as _;
 

@@ -1,0 +1,158 @@
+//! The element's animator, in JavaScript: poses, placements, events and states are those of the crate pantin-animator, to the last bit.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use harness::animator::{self as reference, Sequence};
+use harness::{paths, setup, vectors};
+use pantin::{Bank, Clip};
+use pantin_animator::machine::{SECTION, Table};
+use tempfile::TempDir;
+
+/// Scripts for each group of clips, their lines, and updates of the state machine of our character.
+const SCRIPTS: u64 = 3;
+const LINES: u32 = 300;
+const UPDATES: u32 = 4000;
+/// Pictures a second at which the recorded session is played.
+const RATES: [u64; 4] = [24, 60, 90, 144];
+/// Banks with random tables, damaged banks, and updates of each.
+const TABLES: u32 = 1500;
+const MUTANTS: u32 = 1500;
+const FEW_UPDATES: u32 = 25;
+
+fn motion(name: &str) -> PathBuf {
+    paths::root().join("motions").join(name)
+}
+
+/// What the script in Node prints.
+fn printed(what: &str, script: &Path, files: &[PathBuf]) -> String {
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/animator.mjs")).arg(what).arg(script).args(files);
+    let output = node.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Fails with the first line that differs.
+fn same(what: &str, expected: &str, got: &str) {
+    for (number, (expected, got)) in expected.lines().zip(got.lines()).enumerate() {
+        assert_eq!(got, expected, "{what}, line {number}");
+    }
+    assert_eq!(got.lines().count(), expected.lines().count(), "{what}");
+}
+
+fn write(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Random scripts for the clips of every rig of the vectors, in several forms, and for our motions.
+#[test]
+fn transitions_are_those_of_the_crate() {
+    if setup::host_only("the animator in JavaScript") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut files: Vec<Vec<u8>> = vectors::load(&vectors::folder()).unwrap().into_iter().map(|vector| vector.clip).collect();
+    files.extend(["walk.ptn", "run.ptn", "greet.ptn", "kneebend.ptn"].map(|name| std::fs::read(motion(name)).unwrap()));
+    let others: Vec<Vec<u8>> = files.iter().filter_map(|bytes| reference::in_another_form(bytes)).collect();
+    files.extend(others);
+    let mut groups: Vec<(u32, Vec<&[u8]>)> = vec![];
+    for bytes in &files {
+        let Ok(clip) = Clip::new_checked(bytes) else { continue };
+        match groups.iter_mut().find(|(rig, _)| *rig == clip.rig().id()) {
+            Some((_, clips)) => clips.push(bytes),
+            None => groups.push((clip.rig().id(), vec![bytes])),
+        }
+    }
+    let mut instants = 0;
+    for (rig, bytes) in &groups {
+        let clips: Vec<Clip> = bytes.iter().filter_map(|bytes| Clip::new_checked(bytes).ok()).collect();
+        let paths: Vec<PathBuf> =
+            bytes.iter().enumerate().map(|(at, bytes)| write(&folder, &format!("{rig:08x}-{at}.ptn"), bytes)).collect();
+        for seed in 0..SCRIPTS {
+            // The element has no steps of whole frames: it lets as much time pass.
+            let step = format!("t {}", clips[0].frame_time_ns() / 1000);
+            let lines = reference::script(&clips, LINES, &mut Sequence(seed));
+            let text: String = lines.lines().flat_map(|line| [if line == "p" { &step } else { line }, "\n"]).collect();
+            let expected = reference::play(&clips, &text);
+            instants += expected.lines().count();
+            same(&format!("rig {rig:08x}, script {seed}"), &expected, &printed("play", &write(&folder, "script", &text), &paths));
+        }
+    }
+    println!("{} rigs, {instants} instants", groups.len());
+    assert!(groups.len() > 10 && instants > 10_000);
+}
+
+/// Compares what becomes of banks, and returns how many play.
+fn compare(folder: &TempDir, what: &str, banks: &[&[u8]], script: &str) -> usize {
+    let outcomes: Vec<String> = banks.iter().map(|bank| reference::steer(bank, true, script)).collect();
+    let all: Vec<u8> = banks.iter().flat_map(|bank| [&(bank.len() as u32).to_le_bytes()[..], bank].concat()).collect();
+    let files = [write(folder, "banks", all)];
+    same(what, &outcomes.concat(), &printed("steer", &write(folder, "inputs", script), &files));
+    outcomes.iter().filter(|outcome| *outcome != "refused\n").count()
+}
+
+#[test]
+fn our_character_is_that_of_the_crate_at_every_rate() {
+    if setup::host_only("the animator in JavaScript") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let character = std::fs::read(motion("character.ptb")).unwrap();
+    let table = Table::of_bank(&character).unwrap();
+    let session = std::fs::read_to_string(motion("steer.txt")).unwrap();
+    for rate in RATES {
+        let script = reference::recorded(&session, &table, rate).unwrap();
+        assert_eq!(compare(&folder, &format!("{rate} pictures a second"), &[&character], &script), 1);
+    }
+    compare(&folder, "random inputs", &[&character], &reference::inputs(&table, UPDATES, &mut Sequence(1)));
+}
+
+/// Banks with random tables, some of which their rules forbid, and damaged banks: both refuse them, or play alike.
+#[test]
+fn other_machines_are_those_of_the_crate() {
+    if setup::host_only("the animator in JavaScript") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let bank = std::fs::read(vectors::folder().join("bank.ptb")).unwrap();
+    let clips = Bank::new_checked(&bank).unwrap().len() as u32;
+    let mut numbers = Sequence(5);
+    let banks: Vec<Vec<u8>> = (0..TABLES).map(|_| reference::with_table(&bank, clips, &mut numbers)).collect();
+    let any = banks.iter().find_map(|bank| Table::of_bank(bank).ok().filter(|table| table.inputs() == 4)).unwrap();
+    let script = reference::inputs(&any, FEW_UPDATES, &mut numbers);
+    let played = compare(&folder, "random tables", &banks.iter().map(Vec::as_slice).collect::<Vec<_>>(), &script);
+    assert!(played > TABLES as usize / 10, "{played} tables play");
+
+    let character = std::fs::read(motion("character.ptb")).unwrap();
+    let play = |bank: &&Vec<u8>| Table::of_bank(bank).is_ok();
+    let sources: Vec<Vec<u8>> = banks.iter().filter(play).take(20).cloned().chain(vec![character; 10]).collect();
+    let mutants: Vec<Vec<u8>> = (0..MUTANTS).map(|_| mutant(&mut numbers, &sources)).collect();
+    let played = compare(&folder, "damaged banks", &mutants.iter().map(Vec::as_slice).collect::<Vec<_>>(), &script);
+    assert!((MUTANTS / 10..MUTANTS * 9 / 10).contains(&(played as u32)), "{played} damaged banks play");
+    println!("{TABLES} random tables and {MUTANTS} damaged banks; of these {played} play");
+}
+
+/// A bank that is damaged in one or two places; its checksums are right, mostly.
+fn mutant(numbers: &mut Sequence, sources: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = sources[numbers.below(sources.len() as u32) as usize].clone();
+    for _ in 0..=numbers.below(2) {
+        let at = numbers.below(bytes.len() as u32) as usize;
+        bytes[at] ^= 1 << numbers.below(8);
+    }
+    if numbers.below(8) > 0 {
+        hostile::fix::bank(&mut bytes);
+        hostile::fix::clips_of_bank(&mut bytes);
+        mend_table(&mut bytes);
+    }
+    bytes
+}
+
+/// Makes the checksum of a bank's table right, as far as its sections can be told.
+fn mend_table(bytes: &mut [u8]) {
+    let Some(table) = Bank::new_checked(bytes).ok().and_then(|bank| bank.section(SECTION).ok().flatten()) else { return };
+    let (at, len) = (table.as_ptr().addr() - bytes.as_ptr().addr(), table.len());
+    hostile::fix::rig(&mut bytes[at..at + len]);
+}
