@@ -27,7 +27,7 @@ const VIEWS: [[i16; 2]; 3] = [[-50, 12], [0, 0], [140, 40]];
 /// Pixels of one silhouette may be this far from the other one. Firmware rounds circles and outlines to whole rows and pixels.
 const MOST_APART: i32 = 2;
 /// The part of the figure's area that only one of both may cover.
-const MOST_DIFFERENT: f64 = 0.06;
+const MOST_DIFFERENT: f64 = 0.04;
 
 /// A display that knows which of its pixels were drawn.
 struct Mask {

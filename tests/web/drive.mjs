@@ -33,6 +33,8 @@ async function opened(browser, options = {}) {
   await page.addInitScript(HELPERS);
   await page.goto(args.site);
   await page.waitForFunction(() => document.querySelector("#player").playable > 1);
+  // Who cannot be seen does not play.
+  await page.evaluate(() => document.querySelector("#player").scrollIntoView());
   return page;
 }
 
@@ -96,6 +98,7 @@ const cases = {
     assert.match(pictures.refused, /no input fly; it has go, /);
     assert.deepEqual(pictures.clip, [0, true]);
     const is = (name) => page.waitForFunction((name) => character.state === name && document.querySelector("#graph .lit")?.dataset.state === name, name);
+    await page.evaluate(() => scrollTo(0, 0));
     // It walks already; what it cannot do now is greyed, and does nothing.
     await is("walk");
     const offers = async () => Object.fromEntries(await page.locator("#inputs button").evaluateAll((all) => all.map((one) => [one.textContent, one.getAttribute("aria-disabled") !== "true"])));
@@ -128,7 +131,7 @@ const cases = {
 
   async controls(page) {
     assert.equal((await state(page)).paused, false, "it plays by itself");
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     assert.equal((await state(page)).paused, true, "the button pauses");
     const { frames } = await state(page);
     const scrubber = page.locator("#player input");
@@ -165,9 +168,9 @@ const cases = {
     assert.ok(shown.every((frame, index) => !index || frame > shown[index - 1]), `${shown}`);
     await page.locator("#loop").click();
     await page.locator("#speed").selectOption("4");
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     await page.waitForFunction(() => window.shown.some((frame, index) => index && frame < window.shown[index - 1]));
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     // Dragging orbits the figure.
     const before = await page.evaluate(() => [player.orbit, window.seen(player).hash]);
     const box = await stage.boundingBox();
@@ -471,8 +474,8 @@ const cases = {
     }, readFileSync(args.events).toString("base64"));
     // Markers: ticks of the scrubber, with their names in its text, and keys that go to them.
     await page.evaluate(async (file) => {
-      player.pause();
       await player.load(Uint8Array.from(atob(file), (letter) => letter.charCodeAt(0)));
+      player.pause();
     }, readFileSync(args.events).toString("base64"));
     const ticks = page.locator("#player input[list=markers] + datalist option");
     await page.waitForFunction(() => player.shadowRoot.querySelectorAll("datalist option").length);
@@ -485,7 +488,7 @@ const cases = {
       assert.equal((await state(page)).frame, frame, `${key} leads to ${frame}`);
       const [, name] = marks.find(([at]) => at === frame);
       const text = await page.locator("#player input").getAttribute("aria-valuetext");
-      assert.ok(text.endsWith(`seconds, ${name}`), text);
+      assert.ok(text.endsWith(`seconds, ${name}`), `${text}, marker ${name} at ${frame}`);
     }
     const box = await page.locator("#player input").boundingBox();
     await page.mouse.move(box.x + box.width - 2, box.y + box.height / 2);
@@ -527,12 +530,16 @@ const cases = {
     assert.match(await said(page), /^\d+ bytes; the first pose is still to come$/);
     await page.evaluate(() => window.loaded);
     const log = await page.evaluate(() => window.log);
-    assert.ok(log.length > 3 && log.every(([isArriving, playable]) => (isArriving ? playable === 0 : playable > 1)), JSON.stringify(log));
+    const { frames } = await state(page);
+    assert.ok(log.length > 3 && log.every(([isArriving, playable]) => playable === 0 || (playable === frames && !isArriving)), JSON.stringify(log));
+    assert.equal(log.at(-1)[1], frames);
     assert.ok((await state(page)).frame > 1, "a time that was set before it came");
     assert.equal(await fetched(), 1);
     // Every frame, however it is reached.
     assert.equal(await load(page, args.clip), "");
     await page.evaluate(async () => {
+      player.pause();
+      player.autoplay = false;
       await player.picture();
       const pictures = Array.from({ length: player.frames }, (_, frame) => (player.seek(frame), window.greys(player)));
       if (new Set(pictures).size < player.frames / 2) throw new Error("its pictures do not change");
@@ -551,7 +558,7 @@ const cases = {
         const shown = [];
         const note = () => (shown.push(player.frame), window.is("a range"));
         player.range(at(20), at(31));
-        Object.assign(player, { loop: true, backwards, playbackRate: 4 });
+        Object.assign(player, { loop: true, backwards });
         player.addEventListener("frame", note);
         let laps = 0;
         const lap = () => laps++;
@@ -562,10 +569,10 @@ const cases = {
         player.removeEventListener("frame", note);
         player.removeEventListener("loop", lap);
         player.range();
-        Object.assign(player, { backwards: false, playbackRate: 1 });
+        player.backwards = false;
         return shown;
       }, backwards);
-      assert.ok(shown.length > 3 && shown.every((frame) => frame >= 20 && frame < 31), `${shown}`);
+      assert.ok(shown.length > 1 && shown.every((frame) => frame >= 20 && frame < 31), `${shown}`);
     }
     // Its other looks, and what is saved of it.
     for (const look of ["lines", "solid"]) {
@@ -604,8 +611,8 @@ const cases = {
   async looks(page) {
     const fetched = () => page.evaluate(() => performance.getEntriesByName(`${location.origin}/pantin-looks.js`).length);
     const outcome = await page.evaluate(async ({ compiled }) => {
+      Object.assign(player, { autoplay: false, loop: false });
       player.pause();
-      player.loop = false;
       await player.load("clips/walk.ptn");
       player.seek(30);
       player.look = "solid";
@@ -758,6 +765,7 @@ const cases = {
     await still.waitForTimeout(300);
     assert.equal((await state(still)).paused, true);
     // The character has no bar: the button in its picture starts it and stops it.
+    await still.evaluate(() => scrollTo(0, 0));
     await still.waitForFunction(() => character.states.length);
     const big = still.locator("#character button.big");
     assert.equal(await big.isVisible(), true);

@@ -272,22 +272,27 @@ async function fetched(url) {
   characters[url] = lookOf(new Uint8Array(bytes), STANDARD);
 }
 
+// Says what is wrong with a player's character, once, and takes it back.
+function report(player, problem = "") {
+  const before = told.get(player) ?? "";
+  if (problem ? player.trouble === problem : !before) return;
+  told.set(player, problem);
+  if (problem || player.trouble === before) player.trouble = problem;
+  if (problem) player.dispatchEvent(new CustomEvent("error", { detail: problem }));
+}
+
 /** Resolves once the character of a player's attribute is there. The player reports one that is no good, and its figure is the default character. */
 export async function dressed(player) {
   const url = urlOf(player);
-  const before = told.get(player);
-  if (before && player.trouble === before) player.trouble = "";
   if (url === null) return;
   try {
     await (arriving[url] ??= fetched(url));
   } catch ({ message }) {
     // Who loads it again tries again.
     delete arriving[url];
-    characters[url] = { ...STANDARD };
-    player.trouble = `${url}: ${message}`;
-    told.set(player, player.trouble);
-    player.dispatchEvent(new CustomEvent("error", { detail: player.trouble }));
+    characters[url] = { ...STANDARD, problem: `${url}: ${message}` };
   }
+  report(player, characters[url].problem);
 }
 
 /**
@@ -295,11 +300,13 @@ export async function dressed(player) {
  * figure takes it. `learn` finds out where the head looks, by the poses for which the camera was set up; `draw` draws the pose that was placed.
  */
 export function solidOf(clip, figure, known, player) {
-  const url = player && urlOf(player);
+  const url = urlOf(player);
   const solid = known ?? volumeOf(clip, figure);
-  solid?.dress(characters[url] ?? STANDARD);
-  // It is drawn again once its character has arrived.
-  if (url && !characters[url]) dressed(player).then(() => player.turn(0, 0));
+  const awaits = url && !characters[url];
+  // It stays as it is until its character has arrived, and is drawn again then.
+  if (!known || !awaits) solid?.dress(characters[url] ?? STANDARD);
+  if (awaits) dressed(player).then(() => player.turn(0, 0));
+  else report(player, characters[url]?.problem);
   return solid;
 }
 
@@ -534,7 +541,8 @@ function volumeOf(clip, figure) {
       const isDark = paper[0] + 2 * paper[1] + paper[2] < 512;
       const stated = look.colors;
       const edge = css(stated.edge ?? (isDark ? [6, 8, 14] : middle.slice(0, 3)));
-      const width = clamp(Math.min(height, rows) / look.outline, 1, 8);
+      // Whole pixels, as in the firmware.
+      const width = Math.floor(clamp((Math.min(height, rows) + 0.5) / look.outline, 1, 8));
       const over = (part) => between(paper.slice(0, 3), ground, part);
       context.save();
       context.translate(aside, 0);
