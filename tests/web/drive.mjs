@@ -744,6 +744,7 @@ const cases = {
           faults.push(...found.map((fault) => `${width} ${colorScheme} ${what}: ${fault}`));
         };
         await check("page");
+        await one.evaluate(() => (document.querySelector("#fold").open = false));
         if (args.folder) await one.screenshot({ path: `${args.folder}/page-${width}-${colorScheme}.png`, fullPage: true });
         if (width === 390) {
           await one.locator("#effort").selectOption("fast");

@@ -141,8 +141,6 @@ async function graph() {
   lit();
 }
 graph().catch(() => {});
-// On a phone it is folded.
-$("fold").open = matchMedia("(min-width: 60rem)").matches;
 fetch("clips/character.json").then((response) => response.json()).then((known) => ((possible = known), offered()), () => {});
 
 // ---- links
@@ -384,7 +382,7 @@ async function take(files) {
   else if (clip) {
     const others = files.filter((file) => file !== clip).map((file) => file.name);
     if (others.length) trouble(`${clip.name} is played; ${others.join(", ")} ${others.length > 1 ? "were" : "was"} left out.`);
-    scrollTo({ top: 0, behavior: "smooth" });
+    player.scrollIntoView({ block: "nearest", behavior: "smooth" });
     return show({ name: clip.name, data: await clip.arrayBuffer() });
   } else {
     $("working").hidden = false;

@@ -22,7 +22,7 @@ pub fn filled(site: &Path, page: &str) -> Result<String> {
         others.push(("BVH", sent(&site.join("clips/walk.bvh"))?));
     }
     ensure!([WALK, OTHERS].iter().all(|mark| page.contains(mark)), "the page has no place for the walk's sizes");
-    let others: Vec<String> = others.iter().map(|(format, bytes)| format!("as {format} {}", text(*bytes))).collect();
+    let others: Vec<String> = others.iter().map(|(format, bytes)| format!("{} as {format}", text(*bytes))).collect();
     Ok(page.replace(WALK, &text(bytes)).replace(OTHERS, &others.join(", ")))
 }
 
