@@ -284,7 +284,7 @@ function report(player, problem = "") {
 /** Resolves once the character of a player's attribute is there. The player reports one that is no good, and its figure is the default character. */
 export async function dressed(player) {
   const url = urlOf(player);
-  if (url === null) return;
+  if (!url) return;
   try {
     await (arriving[url] ??= fetched(url));
   } catch ({ message }) {
@@ -292,7 +292,7 @@ export async function dressed(player) {
     delete arriving[url];
     characters[url] = { ...STANDARD, problem: `${url}: ${message}` };
   }
-  report(player, characters[url].problem);
+  if (urlOf(player) === url) report(player, characters[url].problem);
 }
 
 /**

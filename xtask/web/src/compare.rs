@@ -52,7 +52,8 @@ fn lottie(clip: &Path) -> Result<usize> {
     let folder = tempfile::tempdir().context("a folder for a Lottie file")?;
     let out = folder.path().join("walk.json");
     let mut node = Command::new(setup::emulator("node")?);
-    let output = node.arg(paths::root().join("web/tools/lottie.mjs")).arg(clip).arg(&out).output().context("cannot start node")?;
+    let output =
+        node.arg(paths::root().join("web/tools/lottie.mjs")).arg(clip).arg(&out).output().context("cannot start node")?;
     ensure!(output.status.success(), "lottie.mjs: {}", String::from_utf8_lossy(&output.stderr).trim());
     sent(&out)
 }

@@ -168,7 +168,8 @@ fn inputs(source: &machine::Source) -> serde_json::Value {
         let rows = state.transitions.iter().chain(&source.any).map(|row| row.get_ref());
         let led = rows.flat_map(|row| [&row.input, &row.released]).flatten();
         let layers = source.layers.iter().map(|layer| layer.get_ref());
-        let played = layers.filter(|layer| layer.states.as_ref().is_none_or(|states| states.contains(name))).map(|layer| &layer.input);
+        let played =
+            layers.filter(|layer| layer.states.as_ref().is_none_or(|states| states.contains(name))).map(|layer| &layer.input);
         (name.clone(), json!(led.chain(played).collect::<Vec<_>>()))
     });
     states.collect::<serde_json::Map<_, _>>().into()
