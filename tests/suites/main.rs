@@ -19,6 +19,7 @@ mod panels;
 mod pico;
 mod pico_update;
 mod qemu;
+mod silhouettes;
 mod soak;
 mod solid;
 mod stack;

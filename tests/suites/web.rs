@@ -17,13 +17,14 @@ use pantin_convert::expand::expand;
 use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::verify;
 use pantin_figure::rotation::Rotation;
+use pantin_figure::solid::look_text;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
 /// Chromium, and the address of the page, built and served once for all tests, with some more files.
 static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
-    let extras = extras().into_iter().map(|(name, bytes)| (format!("/extra/{name}.ptn"), bytes)).collect();
-    (Browser::ready().unwrap(), web::served(extras).unwrap())
+    let clips = extras().into_iter().map(|(name, bytes)| (format!("/extra/{name}.ptn"), bytes));
+    (Browser::ready().unwrap(), web::served(clips.chain(others()).collect()).unwrap())
 });
 
 /// The firmware's code as modules, in a folder of their own: decoder, figure and animator, and the face.
@@ -64,6 +65,23 @@ fn extras() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
+/// Key clips and a bank of them, characters, and modules of the player by themselves.
+fn others() -> Vec<(String, Vec<u8>)> {
+    let read = |path: &str| std::fs::read(paths::root().join(path)).unwrap();
+    let key = |name: &str| (format!("/extra/key-{name}"), read(&format!("tests/key-vectors/{name}")));
+    let mut files: Vec<_> = ["walk.ptn", "greet.ptn", "events.ptn", "bank.ptb", "malformed-noise.ptn"].map(key).into();
+    let walk = read("tests/key-vectors/walk.ptn");
+    files.push(("/extra/key-truncated.ptn".into(), walk[..walk.len() - 20].to_vec()));
+    files.push(("/extra/turn-orders.ptn".into(), read("tests/vectors/turn-orders.ptn")));
+    let cat = String::from_utf8(read("motions/looks/cat.look")).unwrap();
+    files.push(("/extra/cat.look".into(), look_text::compile(&cat).unwrap().to_vec()));
+    files.push(("/extra/wrong.look".into(), b"# a comment\n\nradius hip 201\n".to_vec()));
+    for (name, module) in [("tables", "decoder"), ("clip", "decoder"), ("figure", "player")] {
+        files.push((format!("/source/{name}.js"), read(&format!("web/packages/{module}/{name}.js"))));
+    }
+    files
+}
+
 /// A clip of several blocks: our walk, exact, eight times as many frames.
 fn long() -> &'static Path {
     static LONG: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
@@ -77,13 +95,15 @@ fn long() -> &'static Path {
     &LONG.1
 }
 
-fn drive(case: &str, mut arguments: Value) -> Value {
+/// Drives the page.
+pub(crate) fn drive(case: &str, mut arguments: Value) -> Value {
     let (browser, address) = &*STAGE;
     arguments["site"] = json!(address);
     browser.drive(case, &arguments).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-fn own(name: &str) -> PathBuf {
+/// A file of ours.
+pub(crate) fn own(name: &str) -> PathBuf {
     paths::root().join("motions").join(name)
 }
 
@@ -93,7 +113,7 @@ fn picture(greys: &Value) -> Picture {
     Picture { display: GREYS, pixels }
 }
 
-/// Our own walk, a face, both, and a captured walk: a file for the page, one for the host, and frames in an order that goes back and forth.
+/// Our own walk, a face, both, and key clips of a walk and of a body with a face: a file for the page, one for the host, and frames in an order that goes back and forth.
 #[test]
 fn the_canvas_shows_what_the_host_shows() {
     if skipped("the page's pictures") {
@@ -101,18 +121,19 @@ fn the_canvas_shows_what_the_host_shows() {
     }
     let views: [(&[u8], i32, i32); 4] = [(b"", -50, 12), (b"aa", -80, 12), (b"ddddw", 10, 17), (b"vvss", -90, 2)];
     let (mut parts, mut expected) = (vec![], vec![]);
-    for clip in ["walk.ptn", "face/hello.ptn", "greet.ptn", "face/wink.ptn"] {
-        let path = own(clip);
+    let key = |name: &str| (paths::root().join("tests/key-vectors").join(name), format!("extra/key-{name}"));
+    let clip = |name: &str| (own(name), format!("clips/{}", Path::new(name).file_name().unwrap().to_string_lossy()));
+    let clips = ["walk.ptn", "face/hello.ptn", "greet.ptn", "face/wink.ptn"].map(clip);
+    for (path, file) in clips.into_iter().chain(["walk.ptn", "greet.ptn"].map(key)) {
         let frames = Clip::new_checked(&std::fs::read(&path).unwrap()).unwrap().frames() as usize;
         let mut order: Vec<usize> = (0..frames.min(40)).chain([frames - 1, 7, 6, 5, frames / 2, frames / 2 - 1, 0]).collect();
         order.extend((0..frames).rev().step_by(3));
         for (letters, orbit, tilt) in views {
             let keys: Vec<&[u8]> = std::iter::once(letters).chain(vec![&b""[..]; frames]).collect();
             let shown = simulator::play::<Rotation>(GREYS, std::slice::from_ref(&path), &[], &keys).unwrap();
-            let file = format!("clips/{}", path.file_name().unwrap().to_string_lossy());
             parts.push(json!({ "clip": file, "frames": order, "orbit": orbit, "tilt": tilt }));
             let of = |&frame: &usize| shown[1..].iter().find(|(number, _)| *number as usize == frame).unwrap().1.clone();
-            expected.push((clip, orbit, order.clone(), order.iter().map(of).collect::<Vec<_>>()));
+            expected.push((file.clone(), orbit, order.clone(), order.iter().map(of).collect::<Vec<_>>()));
         }
     }
     let shown = drive("pixels", json!({ "parts": parts }));
@@ -268,6 +289,29 @@ fn everything_on_the_page_can_be_used() {
         drive("saves", json!({}));
         let vector = |name: &str| paths::root().join("tests/vectors").join(name);
         drive("bank", json!({ "bank": vector("bank.ptb"), "events": vector("event-names.ptn") }));
+    }
+}
+
+#[test]
+fn key_clips_play_as_other_clips_do() {
+    if skipped("key clips") {
+        return;
+    }
+    let long = std::fs::read(paths::root().join("tests/key-vectors/channels-300.ptn")).unwrap();
+    let total = long.len();
+    let slow = slow::serve(long, total, total / 8, Duration::from_millis(100)).unwrap();
+    let clip = |name: &str| format!("extra/key-{name}");
+    let files = json!({
+        "slow": slow, "clip": clip("walk.ptn"), "events": clip("events.ptn"), "bank": clip("bank.ptb"), "malformed": clip("malformed-noise.ptn"),
+        "truncated": clip("truncated.ptn"),
+    });
+    drive("keys", files);
+}
+
+#[test]
+fn the_page_is_accessible() {
+    if !skipped("axe-core") {
+        drive("accessible", json!({ "folder": shots() }));
     }
 }
 

@@ -37,7 +37,7 @@ function convert(files, options) {
   } catch (error) {
     throw new Error(panicked || error.message);
   }
-  return { good, report: JSON.parse(new TextDecoder().decode(output(REPORT))), sizes: [CLIP, HEADER, RIG, POSES].map((which) => output(which).length), parts };
+  return { good, report: JSON.parse(new TextDecoder().decode(output(REPORT))), clip: output(CLIP), sizes: [CLIP, HEADER, RIG, POSES].map((which) => output(which).length), parts };
 }
 
 const read = (name) => [name, new Uint8Array(readFileSync(`${folder}/${name}`))];
@@ -76,6 +76,19 @@ assert.deepEqual(sources(many.report).map((text) => text.slice(0, 45)), [
 // A face whose values the body has already is left out, and the body is converted.
 const twice = convert([["one.csv", face[1]], ["two.csv", face[1]]], {});
 assert.deepEqual(sources(twice.report), ["warning two.csv: left out: one face can be converted at a time"]);
+
+// A motion with keys becomes a key clip or segments, whichever is smaller, and a note has the bytes of both.
+const own = (name) => [name.split("/").pop(), new Uint8Array(readFileSync(new URL(`../../motions/${name}`, import.meta.url)))];
+for (const [name, cm, hasKeys] of [["walk.keys", 0.5, true], ["library/bow.keys", 3, false]]) {
+  const { good, report, clip } = convert([own(name)], { max_error_cm: cm });
+  assert.ok(good, report.text);
+  assert.equal(clip[2], hasKeys ? 2 : 1, name);
+  const { text, remedy } = report.notes.find(({ kind }) => kind === "keys");
+  const [first, second] = text.match(/\d+/g).map(Number);
+  assert.equal(first, clip.length, text);
+  assert.ok(hasKeys ? second > first : second >= first, text);
+  assert.equal(remedy, hasKeys ? "write-segments" : null);
+}
 
 // Refusals, by what is refused.
 const refused = (files, options) => {

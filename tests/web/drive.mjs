@@ -33,6 +33,8 @@ async function opened(browser, options = {}) {
   await page.addInitScript(HELPERS);
   await page.goto(args.site);
   await page.waitForFunction(() => document.querySelector("#player").playable > 1);
+  // Who cannot be seen does not play.
+  await page.evaluate(() => document.querySelector("#player").scrollIntoView());
   return page;
 }
 
@@ -96,7 +98,18 @@ const cases = {
     assert.match(pictures.refused, /no input fly; it has go, /);
     assert.deepEqual(pictures.clip, [0, true]);
     const is = (name) => page.waitForFunction((name) => character.state === name && document.querySelector("#graph .lit")?.dataset.state === name, name);
+    await page.evaluate(() => scrollTo(0, 0));
+    // It walks already; what it cannot do now is greyed, and does nothing.
+    await is("walk");
+    const offers = async () => Object.fromEntries(await page.locator("#inputs button").evaluateAll((all) => all.map((one) => [one.textContent, one.getAttribute("aria-disabled") !== "true"])));
+    await page.waitForFunction(() => document.querySelector("#inputs [data-fire=bow]").getAttribute("aria-disabled") === "true");
+    assert.deepEqual(await offers(), { Walk: true, Run: true, "Turn left": false, "Turn right": false, Jump: true, Wave: true, Bow: false, "Sit, stand": true, Dance: false });
+    assert.match(await page.locator("#why").textContent(), /no way from “walk” to turn left, turn right, bow, dance/);
+    await page.getByRole("button", { name: "Bow", exact: true }).dispatchEvent("click");
+    await page.getByRole("button", { name: "Walk", exact: true }).click();
     await is("idle");
+    assert.ok(Object.values(await offers()).every(Boolean), "all of it can be done");
+    assert.equal(await page.locator("#why").textContent(), "");
     await page.locator("#character .stage").click();
     await page.keyboard.down("ArrowUp");
     await is("walk");
@@ -118,7 +131,7 @@ const cases = {
 
   async controls(page) {
     assert.equal((await state(page)).paused, false, "it plays by itself");
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     assert.equal((await state(page)).paused, true, "the button pauses");
     const { frames } = await state(page);
     const scrubber = page.locator("#player input");
@@ -155,9 +168,9 @@ const cases = {
     assert.ok(shown.every((frame, index) => !index || frame > shown[index - 1]), `${shown}`);
     await page.locator("#loop").click();
     await page.locator("#speed").selectOption("4");
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     await page.waitForFunction(() => window.shown.some((frame, index) => index && frame < window.shown[index - 1]));
-    await page.locator("#player .bar button").click();
+    await page.locator("#player .bar button:first-child").click();
     // Dragging orbits the figure.
     const before = await page.evaluate(() => [player.orbit, window.seen(player).hash]);
     const box = await stage.boundingBox();
@@ -169,9 +182,19 @@ const cases = {
     assert.ok(Math.abs(after[0] - before[0]) > 30 && after[1] !== before[1], `${before} ${after}`);
     await page.locator("#home").click();
     assert.equal((await state(page)).orbit, -50);
-    await page.locator("#oled").click();
+    const figure = page.locator("#figure");
+    await figure.selectOption("oled");
     assert.equal(await page.evaluate(() => player.look + player.canvas.width), "oled128");
-    assert.equal(await page.locator("#oled").getAttribute("aria-pressed"), "true");
+    await figure.selectOption("solid cat");
+    assert.deepEqual(await page.evaluate(() => [player.look, player.getAttribute("character-look")]), ["solid", "clips/cat.look"]);
+    await stage.focus();
+    await page.keyboard.press("l");
+    assert.equal(await figure.inputValue(), "oled", "the key's choice is shown");
+    await page.keyboard.press("l");
+    await page.keyboard.press("l");
+    assert.equal(await figure.inputValue(), "solid cat");
+    await figure.selectOption("lines");
+    assert.deepEqual(await page.evaluate(() => [player.look, player.hasAttribute("character-look")]), ["lines", false]);
     // A clip of the gallery over a slow line, then one from this machine at once.
     await page.locator("#link").selectOption("1200");
     await page.locator("#clips button", { hasText: "wink" }).click();
@@ -322,17 +345,19 @@ const cases = {
       return { width: video.videoWidth, parts: [parts.length, parts.at(-1)], type, failures };
     });
     assert.deepEqual(video, { width: Math.ceil(width / 2) * 2, parts: [15, 1], type: "video/webm", failures: ["TypeError", "AbortError"] });
-    // A page in one file shows its clip without another request.
-    const alone = await page.context().newPage();
-    alone.on("pageerror", (error) => page.troubles.push(error.message));
-    await alone.addInitScript(HELPERS);
-    const requests = [];
-    alone.on("request", (request) => request.url().startsWith("http") && requests.push(new URL(request.url()).pathname));
-    await alone.goto(`${args.site}walk.html`);
-    await alone.waitForFunction(() => document.querySelector("pantin-player").playable === 160);
-    assert.equal(await alone.evaluate(() => window.seen(document.querySelector("pantin-player")).colours > 10), true);
-    assert.deepEqual(requests, ["/walk.html"]);
-    await alone.close();
+    // A page in one file shows its clip without another request: of segments, and of keys with a face.
+    for (const name of ["walk", "greet"]) {
+      const alone = await page.context().newPage();
+      alone.on("pageerror", (error) => page.troubles.push(error.message));
+      await alone.addInitScript(HELPERS);
+      const requests = [];
+      alone.on("request", (request) => request.url().startsWith("http") && requests.push(new URL(request.url()).pathname));
+      await alone.goto(`${args.site}${name}.html`);
+      await alone.waitForFunction(() => document.querySelector("pantin-player").playable === 160);
+      assert.equal(await alone.evaluate(() => window.seen(document.querySelector("pantin-player")).colours > 10), true);
+      assert.deepEqual(requests, [`/${name}.html`]);
+      await alone.close();
+    }
     // A character: its next seconds.
     assert.ok(await page.evaluate(async () => (await character.record({ seconds: 0.4, width: 100 })).size) > 500);
   },
@@ -402,11 +427,343 @@ const cases = {
       const failed = outcome(one.play());
       same([await failed, one.error instanceof Error, one.readyState], ["Error", true, 0], "a clip that is not there");
       one.remove();
+      // Eager is the other word for loading; what is lazy waits until it comes near the screen.
+      const far = document.createElement("div");
+      far.style.cssText = "position: absolute; top: 30000px";
+      document.body.append(far);
+      const late = document.createElement("pantin-player");
+      same(late.loading, "eager", "loading");
+      Object.assign(late, { loading: "lazy", src: "clips/run.ptn" });
+      far.append(late);
+      await new Promise((go) => setTimeout(go, 300));
+      same([late.loading, late.readyState, late.received], ["lazy", 0, 0], "lazy, far away");
+      late.scrollIntoView();
+      while (late.readyState < 4) await new Promise((go) => setTimeout(go, 10));
+      far.remove();
+      scrollTo(0, 0);
+      // Its poster, as an attribute and as an element in the slot, until the first frame is there.
+      const seen = (image) => getComputedStyle(image.assignedSlot ?? image).display !== "none";
+      const posted = made({ poster: "data:image/gif;base64,R0lGODlhAQABAAAAACwAAAAAAQABAAA=" });
+      const image = posted.stage.querySelector("img");
+      same([seen(image), posted.poster.length > 10], [true, true], "poster");
+      const slotted = made({});
+      slotted.innerHTML = "<img slot=poster alt=''>";
+      same(seen(slotted.firstChild), true, "the poster's slot");
+      for (const player of [posted, slotted]) await player.load("clips/run.ptn");
+      same([seen(image.parentElement), seen(slotted.firstChild)], [false, false], "posters after the first frame");
+      [posted, slotted].forEach((player) => player.remove());
+      // Cookies are sent to other origins where they are asked for.
+      const { fetch } = window;
+      const sent = [];
+      window.fetch = (what, options) => (String(what).endsWith(".ptn") && sent.push(options.credentials), fetch(what, options));
+      for (const crossorigin of [null, "anonymous", "use-credentials"]) {
+        const asked = made(crossorigin === null ? {} : { crossorigin });
+        same(asked.crossOrigin, crossorigin, "crossOrigin");
+        await asked.load("clips/run.ptn");
+        asked.remove();
+      }
+      window.fetch = fetch;
+      same(sent, ["same-origin", "same-origin", "include"], "credentials");
+      // In Russian, and in a language that it does not know.
+      for (const [lang, words] of [["ru", ["Воспроизвести", "Во весь экран", "Время"]], ["fr", ["Play", "Full screen", "Time"]]]) {
+        const spoken = made({ lang });
+        const labels = () => [spoken.button, spoken.shadowRoot.querySelector(".full"), spoken.scrubber].map((part) => part.getAttribute("aria-label"));
+        for (let turns = 0; turns < 100 && labels().join() !== words.join(); turns++) await new Promise((go) => setTimeout(go, 20));
+        same(labels(), words, lang);
+        spoken.remove();
+      }
       return told;
     }, readFileSync(args.events).toString("base64"));
+    // Markers: ticks of the scrubber, with their names in its text, and keys that go to them.
+    await page.evaluate(async (file) => {
+      await player.load(Uint8Array.from(atob(file), (letter) => letter.charCodeAt(0)));
+      player.pause();
+    }, readFileSync(args.events).toString("base64"));
+    const ticks = page.locator("#player input[list=markers] + datalist option");
+    await page.waitForFunction(() => player.shadowRoot.querySelectorAll("datalist option").length);
+    const marks = await ticks.evaluateAll((all) => all.map((one) => [+one.value, one.label]));
+    assert.deepEqual(marks.map(([frame]) => frame), [...new Set(await page.evaluate(() => player.events.map(({ frame }) => frame).sort((a, b) => a - b)))]);
+    await page.evaluate(() => player.seek(1));
+    await page.locator("#player .stage").focus();
+    for (const [key, frame] of [["n", marks.find(([frame]) => frame > 1)[0]], ["p", marks.findLast(([frame]) => frame < marks.find(([frame]) => frame > 1)[0])[0]], ["p", marks.at(-1)[0]], ["n", marks[0][0]]]) {
+      await page.keyboard.press(key);
+      assert.equal((await state(page)).frame, frame, `${key} leads to ${frame}`);
+      const [, name] = marks.find(([at]) => at === frame);
+      const text = await page.locator("#player input").getAttribute("aria-valuetext");
+      assert.ok(text.endsWith(`seconds, ${name}`), `${text}, marker ${name} at ${frame}`);
+    }
+    const box = await page.locator("#player input").boundingBox();
+    await page.locator("#player input").hover({ position: { x: box.width - 2, y: box.height / 2 } });
+    await page.waitForFunction((name) => player.scrubber.title === name, marks.at(-1)[1]);
+    // The whole screen, and back; the key does it, too.
+    const full = page.locator("#player .bar .full");
+    assert.equal(await full.getAttribute("aria-label"), "Full screen");
+    const fills = (it) => page.waitForFunction((it) => (document.fullscreenElement === player) === it, it);
+    await full.click();
+    await fills(true);
+    await full.click();
+    await fills(false);
+    await page.locator("#player .stage").focus();
+    await page.keyboard.press("f");
+    await fills(true);
+    await page.keyboard.press("f");
+    await fills(false);
     page.troubles = page.troubles.filter((trouble) => !/404/.test(trouble));
     assert.deepEqual(events.slice(0, 6), ["play", "loadstart", "durationchange", "loadedmetadata", "loadeddata", "canplay"]);
     for (const name of ["playing", "canplaythrough", "seeked", "ratechange", "pause", "ended", "emptied", "error"]) assert.ok(events.includes(name), name);
+  },
+
+  // A key clip does all that other clips do, and its module is fetched for it alone.
+  async keys(page) {
+    const fetched = () => page.evaluate(() => performance.getEntriesByName(`${location.origin}/pantin-keys.js`).length);
+    await page.waitForFunction(() => player.readyState === 4);
+    assert.equal(await fetched(), 0, "clips of segments do without it");
+    // While it arrives there is nothing to show; then there is all of it, and playing that was asked for begins.
+    await page.evaluate((clip) => {
+      window.log = [];
+      ["progress", "ready"].forEach((name) => player.addEventListener(name, () => window.log.push([player.received < player.total, player.playable])));
+      player.pause();
+      player.look = "oled";
+      player.loop = false;
+      window.loaded = player.load(clip);
+      player.currentTime = 0.1;
+    }, args.slow);
+    await page.waitForFunction(() => player.received > 0 && player.received < player.total);
+    assert.match(await said(page), /^\d+ bytes; the first pose is still to come$/);
+    await page.evaluate(() => window.loaded);
+    const log = await page.evaluate(() => window.log);
+    const { frames } = await state(page);
+    assert.ok(log.length > 3 && log.every(([isArriving, playable]) => playable === 0 || (playable === frames && !isArriving)), JSON.stringify(log));
+    assert.equal(log.at(-1)[1], frames);
+    assert.ok((await state(page)).frame > 1, "a time that was set before it came");
+    assert.equal(await fetched(), 1);
+    // Every frame, however it is reached.
+    assert.equal(await load(page, args.clip), "");
+    await page.evaluate(async () => {
+      player.pause();
+      player.autoplay = false;
+      await player.picture();
+      const pictures = Array.from({ length: player.frames }, (_, frame) => (player.seek(frame), window.greys(player)));
+      if (new Set(pictures).size < player.frames / 2) throw new Error("its pictures do not change");
+      const is = (what) => {
+        if (window.greys(player) !== pictures[player.frame]) throw new Error(`${what}: frame ${player.frame}`);
+      };
+      for (let count = 0; count < 40; count++) player.step(1), is("steps");
+      for (let count = 0; count < 60; count++) player.step(-1), is("steps back");
+      for (const frame of [99, 3, 98, player.frames - 1, 0, 1e9, -4]) player.seek(frame), is("seeks");
+      window.is = is;
+    });
+    // A range in a loop, forwards and backwards.
+    for (const backwards of [false, true]) {
+      const shown = await page.evaluate(async (backwards) => {
+        const at = (frame) => (frame * player.facts.frameTime) / 1e9;
+        const shown = [];
+        const note = () => (shown.push(player.frame), window.is("a range"));
+        player.range(at(20), at(31));
+        Object.assign(player, { loop: true, backwards });
+        player.addEventListener("frame", note);
+        let laps = 0;
+        const lap = () => laps++;
+        player.addEventListener("loop", lap);
+        await player.play();
+        while (laps < 2) await new Promise((go) => setTimeout(go, 10));
+        player.pause();
+        player.removeEventListener("frame", note);
+        player.removeEventListener("loop", lap);
+        player.range();
+        player.backwards = false;
+        return shown;
+      }, backwards);
+      assert.ok(shown.length > 1 && shown.every((frame) => frame >= 20 && frame < 31), `${shown}`);
+    }
+    // Its other looks, and what is saved of it.
+    for (const look of ["lines", "solid"]) {
+      const saved = await page.evaluate(async (look) => {
+        player.look = look;
+        const { size } = await player.record({ fps: 5, width: 100, from: 0, to: 1 });
+        return [size > 1000, window.seen(player).colours > 10];
+      }, look);
+      assert.deepEqual(saved, [true, true], look);
+    }
+    // Events of one with scalars alone, a bank of them, and one whose rules are broken, which rests.
+    assert.equal(await load(page, args.events), "");
+    const heard = await page.evaluate(async () => {
+      const heard = [];
+      player.addEventListener("heard", ({ detail }) => heard.push([detail.frame, detail.name]));
+      for (let frame = 0; frame < 30; frame++) player.step(1);
+      return heard;
+    });
+    assert.deepEqual(heard, [[12, "left_foot_down"], [29, ""], [0, "left_foot_down"], [0, "clap"]].map(([frame, name]) => [frame, name]));
+    assert.equal(await load(page, args.bank), "");
+    const names = await page.evaluate(() => player.clips);
+    for (const name of names) {
+      assert.equal(await load(page, `${args.bank}#${name}`), "");
+      assert.ok(await page.evaluate(() => player.playable === player.frames && player.facts.moving > 0), name);
+    }
+    assert.equal(await load(page, args.malformed), "");
+    assert.deepEqual(await page.evaluate(() => [player.playable === player.frames, player.facts.moving]), [true, 0]);
+    // What ends early shows nothing, and what comes next plays.
+    assert.match(await load(page, args.truncated), /ends early/);
+    assert.equal((await state(page)).playable, 0);
+    assert.equal(await load(page, args.clip), "");
+    assert.equal((await state(page)).playable > 100, true);
+  },
+
+  // Characters of the solid figure: by text and compiled; another one, none, and what is no good.
+  async looks(page) {
+    const fetched = () => page.evaluate(() => performance.getEntriesByName(`${location.origin}/pantin-looks.js`).length);
+    const outcome = await page.evaluate(async ({ compiled }) => {
+      Object.assign(player, { autoplay: false, loop: false });
+      player.pause();
+      await player.load("clips/walk.ptn");
+      player.seek(30);
+      player.look = "solid";
+      await player.picture();
+      const plain = window.seen(player).hash;
+      const counted = performance.getEntriesByName(`${location.origin}/pantin-looks.js`).length;
+      // The picture once it is another one than these.
+      const shown = async (...others) => {
+        for (let turns = 0; others.includes(window.seen(player).hash); turns++) {
+          if (turns > 250) throw new Error("the picture stays");
+          await new Promise((go) => setTimeout(go, 20));
+        }
+        return window.seen(player).hash;
+      };
+      const wear = (look) => (look ? player.setAttribute("character-look", look) : player.removeAttribute("character-look"));
+      const has = (color) => {
+        const { data } = player.context.getImageData(0, 0, player.canvas.width, player.canvas.height);
+        for (let at = 0; at < data.length; at += 4) if (color.every((value, index) => Math.abs(value - data[at + index]) < 3)) return true;
+        return false;
+      };
+      wear("clips/cat.look");
+      const cat = await shown(plain);
+      const muzzle = has([0xff, 0xf0, 0xdc]);
+      wear("clips/dancer.look");
+      const dancer = await shown(plain, cat);
+      wear(compiled);
+      const again = await shown(dancer);
+      wear(null);
+      const none = await shown(again);
+      // One that is set before the clip is there when it is.
+      const other = document.createElement("pantin-player");
+      other.style.width = getComputedStyle(player).width;
+      other.setAttribute("look", "solid");
+      other.setAttribute("character-look", "clips/ranger.look");
+      document.body.prepend(other);
+      await other.load("clips/walk.ptn");
+      const [first, ranger] = [window.seen(other).hash, (await other.picture(), window.seen(other).hash)];
+      other.remove();
+      const told = [];
+      player.addEventListener("error", ({ detail }) => told.push(detail));
+      const troubles = [];
+      for (const look of ["clips/none.look", "clips/walk.ptn", "extra/wrong.look", "http://["]) {
+        wear(look);
+        while (told.length <= troubles.length) await new Promise((go) => setTimeout(go, 20));
+        await new Promise((go) => setTimeout(go, 50));
+        troubles.push([player.trouble, window.seen(player).hash === plain, player.shadowRoot.querySelector("p").textContent === player.trouble]);
+      }
+      // An attribute without a name is none; another one takes back what was said.
+      wear("clips/none.look");
+      player.setAttribute("character-look", "");
+      await player.picture();
+      wear("clips/cat.look");
+      await shown(plain);
+      const { trouble } = player;
+      await new Promise((go) => setTimeout(go, 50));
+      return { counted, muzzle, isSame: again === cat, isPlain: none === plain, isThere: first === ranger, troubles, told: told.length, trouble, status: player.shadowRoot.querySelector("p").textContent };
+    }, args);
+    page.troubles = page.troubles.filter((trouble) => !/404/.test(trouble));
+    assert.deepEqual([outcome.counted, outcome.muzzle, outcome.isSame, outcome.isPlain, outcome.isThere], [0, true, true, true, true]);
+    assert.equal(await fetched(), 1);
+    const words = [/^clips\/none\.look: 404$/, /^clips\/walk\.ptn: line 1: expected one of radius, outline, colour, attach$/, /^extra\/wrong\.look: line 3: expected a whole number from 1 to 200$/, /^http:\/\/\[: /];
+    outcome.troubles.forEach(([trouble, isPlain, isSaid], index) => {
+      assert.match(trouble, words[index]);
+      assert.deepEqual([isPlain, isSaid], [true, true], trouble);
+    });
+    assert.deepEqual([outcome.told >= 4, outcome.trouble, outcome.status], [true, "", ""]);
+  },
+
+  // The silhouettes of solid figures: a bit for each pixel, row by row.
+  async silhouettes(page) {
+    return page.evaluate(async ({ parts, size: [width, height] }) => {
+      const [{ openRawClip }, { figureOf, visitor }, { solidOf, dressed }] = await Promise.all(["source/clip.js", "source/figure.js", "pantin-solid.js"].map((script) => import(`/${script}`)));
+      const { keys } = await import("/pantin-keys.js");
+      const context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d", { willReadFrequently: true });
+      // The ground is drawn in the paper's color, which no part has.
+      const paper = [4, 255, 4, 255];
+      const tones = [paper, [0, 0, 0, 255], [255, 160, 60, 255], [80, 190, 255, 255], null, null, paper];
+      const pictures = [];
+      for (const { clip: file, look, frames, orbit, tilt } of parts) {
+        const player = openRawClip(await (await fetch(file)).arrayBuffer(), undefined, false, { keys }).play();
+        const { clip } = player;
+        const wearer = { trouble: "", getAttribute: () => look, dispatchEvent: ({ detail }) => { throw new Error(detail); } };
+        await dressed(wearer);
+        const figure = figureOf(clip, player.raw);
+        const solid = solidOf(clip, figure, undefined, wearer);
+        const visit = visitor(clip, clip.frames, (frame) => player.seek(frame).raw);
+        figure.aim(width, height, orbit, tilt, true, undefined, visit, solid.cover);
+        solid.learn(visit, clip.frames);
+        pictures.push(frames.map((frame) => {
+          figure.place(player.seek(frame).raw);
+          context.fillStyle = `rgb(${paper.slice(0, 3)})`;
+          context.fillRect(0, 0, width, height);
+          solid.draw(context, tones, height, 0);
+          const { data } = context.getImageData(0, 0, width, height);
+          const bits = new Uint8Array(Math.ceil((width * height) / 8));
+          for (let at = 0; at < width * height; at++) {
+            const [red, green, blue] = data.subarray(4 * at);
+            if (green < 128 || red > 64 || blue > 64) bits[at >> 3] |= 1 << (at & 7);
+          }
+          return btoa(String.fromCharCode(...bits));
+        }));
+      }
+      return pictures;
+    }, args);
+  },
+
+  // No fault that axe-core knows, at three sizes, in light and dark, with and without a result; letters of at least 14 pixels; nothing wider than the page.
+  async accessible(page, browser) {
+    const axe = createRequire(`${process.env.PLAYWRIGHT}/`).resolve("axe-core");
+    const faults = [];
+    for (const width of [390, 768, 1280]) {
+      for (const colorScheme of ["light", "dark"]) {
+        const one = await opened(browser, { viewport: { width, height: 844 }, colorScheme, reducedMotion: "reduce" });
+        await one.waitForFunction(() => character.states.length && document.querySelector("#graph svg"));
+        await one.addScriptTag({ path: axe });
+        const check = async (what) => {
+          const found = await one.evaluate(async () => {
+            document.querySelector("#fold").open = true;
+            const { violations } = await window.axe.run();
+            const all = [document, ...[...document.querySelectorAll("pantin-player")].map((player) => player.shadowRoot)].flatMap((root) => [...root.querySelectorAll("*")]);
+            const small = all.filter((element) => {
+              const text = [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
+              if (!text || ["SCRIPT", "STYLE", "TITLE", "OPTION"].includes(element.tagName.toUpperCase()) || !element.getClientRects().length) return false;
+              const scale = element.getScreenCTM?.()?.a ?? 1;
+              return parseFloat(getComputedStyle(element).fontSize) * scale < 14;
+            });
+            return [
+              ...violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(" ")).slice(0, 3).join("; ")}`),
+              ...small.slice(0, 5).map((element) => `small letters: ${element.tagName} ${element.textContent.slice(0, 30)}`),
+              ...(document.documentElement.scrollWidth > innerWidth ? [`${document.documentElement.scrollWidth} pixels wide`] : []),
+            ];
+          });
+          faults.push(...found.map((fault) => `${width} ${colorScheme} ${what}: ${fault}`));
+        };
+        await check("page");
+        await one.evaluate(() => (document.querySelector("#fold").open = false));
+        if (args.folder) await one.screenshot({ path: `${args.folder}/page-${width}-${colorScheme}.png`, fullPage: true });
+        if (width === 390) {
+          await one.locator("#effort").selectOption("fast");
+          await one.locator("#try").click();
+          await one.waitForFunction(() => !document.querySelector("#result").hidden && converted.readyState === 4);
+          await check("a result");
+          if (args.folder) await one.screenshot({ path: `${args.folder}/result-${width}-${colorScheme}.png`, fullPage: true });
+        }
+        assert.deepEqual(one.troubles, []);
+        await one.context().close();
+      }
+    }
+    assert.deepEqual(faults, []);
   },
 
   // Who wants less motion gets none before asking, and a button to ask with.
@@ -415,6 +772,7 @@ const cases = {
     await still.waitForTimeout(300);
     assert.equal((await state(still)).paused, true);
     // The character has no bar: the button in its picture starts it and stops it.
+    await still.evaluate(() => scrollTo(0, 0));
     await still.waitForFunction(() => character.states.length);
     const big = still.locator("#character button.big");
     assert.equal(await big.isVisible(), true);
@@ -491,6 +849,29 @@ const cases = {
       same(early.output.getBoundingClientRect().bottom < early.getBoundingClientRect().bottom, true);
       early.remove();
     });
+
+    // With the style sheet of docs/WEB.md nothing moves when the script runs, nor when there is a clip.
+    const [, reserved] = /```css\n(pantin-player:not[^]*?)```/.exec(readFileSync(new URL("../../docs/WEB.md", import.meta.url), "utf8"));
+    for (const width of [800, 390]) {
+      const narrow = await context.newPage();
+      await narrow.setViewportSize({ width, height: 600 });
+      await narrow.route("**/plain.html", (route) => route.fulfill({ body: body.replace("<body>", "<body><pantin-player bare></pantin-player>"), contentType: "text/html" }));
+      await narrow.goto(`${args.site}plain.html`);
+      const heights = await narrow.evaluate(async (reserved) => {
+        const sheet = new CSSStyleSheet();
+        sheet.replaceSync(reserved);
+        document.adoptedStyleSheets = [sheet];
+        const all = [...document.querySelectorAll("pantin-player")];
+        const measured = () => all.map((player) => player.getBoundingClientRect().height);
+        const before = measured();
+        await import("/pantin-player.js");
+        const defined = measured();
+        await Promise.all(all.map((player) => player.load("clips/walk.ptn")));
+        return [before, defined, measured()];
+      }, reserved);
+      for (const after of heights.slice(1)) after.forEach((height, index) => assert.ok(Math.abs(height - heights[0][index]) < 0.1, `${width}: ${heights.join("; ")}`));
+      await narrow.close();
+    }
 
     // Its life: moved, removed, attached again, never attached, another clip instead, another try.
     await plain.evaluate(async () => {

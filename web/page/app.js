@@ -45,7 +45,8 @@ let heard = null;
 function changed() {
   $("backwards").setAttribute("aria-pressed", player.backwards);
   $("loop").setAttribute("aria-pressed", player.loop);
-  $("oled").setAttribute("aria-pressed", player.look === "oled");
+  const [, character] = /(\w+)\.look$/.exec(player.getAttribute("character-look")) ?? [];
+  $("figure").value = player.look === "solid" && character ? `solid ${character}` : player.look;
   $("speed").value = player.speed;
 }
 
@@ -56,8 +57,13 @@ $("of-bank").onchange = () => show(current, $("of-bank").value);
 const button = (id, act) => ($(id).onclick = () => (act(), changed()));
 button("backwards", () => (player.backwards = !player.backwards));
 button("loop", () => (player.loop = !player.loop));
-button("oled", () => (player.look = player.look === "oled" ? "lines" : "oled"));
 button("home", () => player.turn(-50 - player.orbit, 12 - player.tilt));
+$("figure").onchange = () => {
+  const [look, character] = $("figure").value.split(" ");
+  if (character) player.setAttribute("character-look", `clips/${character}.look`);
+  else player.removeAttribute("character-look");
+  player.look = look;
+};
 $("speed").onchange = () => (player.speed = +$("speed").value);
 $("link").onchange = () => show(current);
 
@@ -66,7 +72,25 @@ $("link").onchange = () => show(current);
 const character = $("character");
 const inputs = [...document.querySelectorAll("#inputs button")];
 
+// The inputs that do something in each state, once they are known.
+let possible = {};
+
+// What a button would do nothing with is greyed, and the line below says why.
+function offered() {
+  const known = possible[character.state];
+  const [go, fast] = inputs;
+  const can = (input) => {
+    const { hold: held, fire } = input.dataset;
+    return !known || input.getAttribute("aria-pressed") === "true" || (held ?? fire).split(" ").some((name) => known.includes(name)) || (input === fast && known.includes(go.dataset.hold));
+  };
+  inputs.forEach((input) => input.setAttribute("aria-disabled", !can(input)));
+  const missing = inputs.filter((input) => !can(input)).map((input) => input.textContent.toLowerCase());
+  const said = missing.length ? `Greyed: the state machine has no way from “${character.state.replaceAll("_", " ")}” to ${missing.length > 4 ? "these" : missing.join(", ")}.` : "";
+  if ($("why").textContent !== said) $("why").textContent = said;
+}
+
 function lit() {
+  offered();
   for (const state of document.querySelectorAll("#graph [data-state]")) state.classList.toggle("lit", state.dataset.state === character.state);
 }
 
@@ -78,12 +102,13 @@ function hold(input, down) {
   // To run is to walk fast.
   if (input === fast && down && go.getAttribute("aria-pressed") === "false") hold(go, true);
   if (input === go && !down && fast.getAttribute("aria-pressed") === "true") hold(fast, false);
+  offered();
 }
 
 for (const input of inputs) {
   const { hold: held, fire } = input.dataset;
   input.onclick = () => {
-    if (!character.inputs.length) return;
+    if (!character.inputs.length || input.getAttribute("aria-disabled") === "true") return;
     if (held) hold(input, input.getAttribute("aria-pressed") === "false");
     // Each state knows one of them.
     else fire.split(" ").forEach((name) => character.fire(name));
@@ -104,7 +129,7 @@ character.addEventListener("blur", () => inputs.filter((input) => input.dataset.
 character.addEventListener("state", lit);
 character.addEventListener("ready", () => {
   $("character-size").textContent = `${character.states.length} states, ${character.clips.length} motions and the figure are ${bytes(character.total)}.`;
-  character.fire("wave");
+  hold(inputs[0], true);
 });
 
 async function graph() {
@@ -116,6 +141,7 @@ async function graph() {
   lit();
 }
 graph().catch(() => {});
+fetch("clips/character.json").then((response) => response.json()).then((known) => ((possible = known), offered()), () => {});
 
 // ---- links
 
@@ -300,6 +326,7 @@ const REMEDIES = {
   "choose-animation": "\u201cAnimation\u201d takes another",
   "give-skeleton": "drop it together with the motion",
   "choose-skeleton": "drop the motion with one skeleton",
+  "write-segments": "other programs may need segments: the command-line tool writes them with --segments",
   "raise-memory": "the command-line tool converts larger motions",
   "loosen-bound": "raise \u201cLargest error\u201d",
 };
@@ -355,7 +382,7 @@ async function take(files) {
   else if (clip) {
     const others = files.filter((file) => file !== clip).map((file) => file.name);
     if (others.length) trouble(`${clip.name} is played; ${others.join(", ")} ${others.length > 1 ? "were" : "was"} left out.`);
-    scrollTo({ top: 0, behavior: "smooth" });
+    player.scrollIntoView({ block: "nearest", behavior: "smooth" });
     return show({ name: clip.name, data: await clip.arrayBuffer() });
   } else {
     $("working").hidden = false;

@@ -14,11 +14,11 @@ pub use xtask_web::{bundle, tools};
 
 use crate::paths;
 
-/// Builds the site into `target/web`, with our walk as a page in one file, and serves it, with some more files by their paths, as long as this program runs; returns the page's
-/// address.
+/// Builds the site into `target/web`, with our walk and a key clip of a body and a face as pages in one file, and serves it, with some more files by their paths, as long as
+/// this program runs; returns the page's address.
 pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
     let folder = paths::root().join("target/web");
-    build(&folder, &[paths::root().join("motions/walk.ptn")])?;
+    build(&folder, &["motions/walk.ptn", "tests/key-vectors/greet.ptn"].map(|clip| paths::root().join(clip)))?;
     let mut site = Site::read(&folder)?;
     for (path, bytes) in extras {
         site.add(path, bytes)?;

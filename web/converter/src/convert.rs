@@ -7,7 +7,7 @@ use pantin_convert::export::source::c_header;
 use pantin_convert::import::animations;
 use pantin_convert::motion::Motion;
 use pantin_convert::raw;
-use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, Setting};
+use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, Setting, UseKeys};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ impl Asked {
         let cm = options["max_error_cm"].as_f64();
         let cm = cm.ok_or_else(|| Error::setting(Setting::MaxError, "expected a length above 0"))?;
         let level = options["effort"].as_str().and_then(|text| text.parse().ok()).unwrap_or(Level::DEFAULT);
-        let mut recipe = Recipe::new().options(Options::new().max_error(Length::cm(cm)).effort(level));
+        let mut recipe = Recipe::new().options(Options::new().max_error(Length::cm(cm)).effort(level).keys(UseKeys::IfSmaller));
         recipe.import.fps = options["fps"].as_f64();
         recipe.import.cm_per_unit = options["cm_per_unit"].as_f64();
         // The page has one field for all files.

@@ -9,7 +9,7 @@ export function Walk() {
   // @ts-expect-error There is no such look.
   const wrong = <pantin-player look="cubes" />;
   return (
-    <pantin-player ref={player} src="walk.ptn" look="solid" loop autoplay speed={1.5} style={{ height: 200 }} onheard={heard} onended={() => player.current?.play()}>
+    <pantin-player ref={player} src="walk.ptn" look="solid" character-look="cat.look" loop autoplay speed={1.5} style={{ height: 200 }} onheard={heard} onended={() => player.current?.play()}>
       {wrong}
     </pantin-player>
   );

@@ -9,7 +9,7 @@ const PACKET = 1200;
 const empty = () => ({ received: 0, total: 0, trouble: "", coming: "", error: null, events: [], clips: [], states: [], inputs: [], parameters: [], state: null });
 // What is said, which a module has in other languages. What is wrong with a file the decoder says.
 const ENGLISH = {
-  figure: "animated figure", play: "Play", pause: "Pause", time: "Time", of: "of", seconds: "seconds", frames: "frames",
+  figure: "animated figure", play: "Play", pause: "Pause", full: "Full screen", time: "Time", of: "of", seconds: "seconds", frames: "frames",
 };
 const HOME = { orbit: -50, tilt: 12 };
 // What is behind the figure where the ground is transparent, on a light page and a dark one.
@@ -28,13 +28,11 @@ const CSS = `
 canvas, .poster { position: absolute; inset: 0; width: 100%; height: 100%; }
 .poster { display: block; object-fit: contain; }
 .shown .poster { display: none; }
-:host([look=oled]) .stage { background: #000; }
-:host([look=oled]) canvas { image-rendering: pixelated; }
-:host([look=oled]) .stage::after { content: ""; position: absolute; inset: 0; background: #bff1ff; mix-blend-mode: multiply; pointer-events: none; }
 .bar { display: flex; gap: .6em; align-items: center; margin-top: .5em; }
 button { font: inherit; width: 2.6em; height: 2.2em; border: 1px solid color-mix(in srgb, currentColor 30%, transparent); border-radius: 7px; background: none; color: inherit; cursor: pointer; }
 i { display: block; width: 11px; height: 13px; margin: auto; background: currentColor; forced-color-adjust: none; clip-path: polygon(0 0, 100% 50%, 0 100%); }
-.runs i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
+.full i { background: none; border: 2px solid; }
+.runs i, .full i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
 .big { display: none; position: absolute; inset: auto auto 10px 10px; width: 44px; height: 44px; border-radius: 50%; border-color: currentColor; color: #fff; background: #000b; }
 .waits .big, :host([bare]) .runs:is(:hover, :focus-within) .big { display: block; }
 .waits .big { inset: 50% auto auto 50%; width: 64px; height: 64px; margin: -32px; }
@@ -75,7 +73,7 @@ function playButton(parent, className, act) {
 
 // Where there is no page, as in Node, the class can be imported but not used.
 export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
-  static observedAttributes = ["src", "look", "speed", "fit", "align", "up", "bare", "poster", "aria-label"];
+  static observedAttributes = ["src", "look", "speed", "fit", "align", "up", "bare", "poster", "aria-label", "character-look"];
   #abort = null;
   // Where the last clip that removal kept from loading is to be loaded from.
   #cut = false;
@@ -114,6 +112,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #frame;
   #slot;
   #big;
+  #full;
   #status;
   #resizing;
   #watching;
@@ -141,6 +140,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.#big = playButton(frame, "big", toggle);
     this.scrubber = make(bar, "input", { type: "range", min: 0, max: 0, step: 1, value: 0 });
     this.output = make(bar, "output", {});
+    if (document.fullscreenEnabled) this.#full = playButton(bar, "full", () => (document.fullscreenElement ? document.exitFullscreen() : this.requestFullscreen()));
     this.#status = make(root, "p", { role: "status" });
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });
     this.scrubber.oninput = () => this.seek(+this.scrubber.value);
@@ -149,11 +149,14 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.scrubber.onpointerup = this.scrubber.onpointercancel = () => (this.#held = false);
     // The page's text has another color.
     this.addEventListener("transitionend", ({ target }) => target === this && this.#aim());
-    // Keys and dragging.
-    const controls = () => import("./pantin-controls.js").then(({ attach }) => attach(this, HOME));
-    root.addEventListener("focusin", controls);
-    this.stage.addEventListener("pointerenter", controls);
+    root.addEventListener("focusin", () => this.#control());
+    this.stage.addEventListener("pointerenter", () => this.#control());
     this.#tell();
+  }
+
+  // Keys, dragging, and markers.
+  #control() {
+    import("./pantin-controls.js").then(({ attach }) => attach(this, HOME), () => {});
   }
 
   connectedCallback() {
@@ -204,18 +207,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     }
   }
 
-  get src() { return this.getAttribute("src"); }
-  set src(src) { this.setAttribute("src", src); }
   get currentSrc() { return this.src === null ? "" : new URL(this.src, document.baseURI).href; }
-  get look() { return ["solid", "oled"].find((look) => look === this.getAttribute("look")) ?? "lines"; }
-  set look(look) { this.setAttribute("look", look); }
-  get fit() { return this.getAttribute("fit") === "whole" ? "whole" : "follow"; }
-  set fit(fit) { this.setAttribute("fit", fit); }
-  // Seconds.
-  get from() { return +this.getAttribute("from") || 0; }
-  set from(from) { this.setAttribute("from", from); }
-  get to() { return +this.getAttribute("to") || Infinity; }
-  set to(to) { this.setAttribute("to", to); }
   get playbackRate() { return this.#rate; }
   set playbackRate(rate) {
     this.#rate = +rate || 1;
@@ -281,6 +273,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       this.#isWhole = abort.done = true;
       this.#want(this.#wanted);
       this.#tell();
+      if (this.events.length) this.#control();
       ["canplaythrough", "ready"].forEach((name) => this.#dispatch(name));
     } catch (error) {
       // Another clip was loaded instead, or the element was removed.
@@ -368,11 +361,13 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     return new Error((words[problem] ?? `problem with the file: ${problem}`) + (playable && playable < frames ? `; ${playable} ${words.of} ${frames} ${words.frames}` : ""));
   }
 
-  // Opens what has come of a file; returns what the decoder finds wrong with it.
+  // Opens what has come of a file; returns what the decoder finds wrong with it. A file of version 2 has keys.
   async #open(file, rig, signal, isPartial) {
+    const extras = file[2] === 2 ? await import("./pantin-keys.js") : {};
+    signal.throwIfAborted();
     let player;
     try {
-      player = openRawClip(file, rig, isPartial).play();
+      player = openRawClip(file, rig, isPartial, extras).play();
     } catch (error) {
       return error.message.slice(8);
     }
@@ -498,7 +493,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       const { frame } = player;
       const figure = (this.#figure ??= figureOf(clip, player.seek(0).raw));
       const visit = visitor(clip, this.#playable, (frame) => player.seek(frame).raw);
-      figure.solid = this.#looks[this.look]?.solidOf?.(clip, figure, figure.solid);
+      figure.solid = this.#looks[this.look]?.solidOf?.(clip, figure, figure.solid, this);
       figure.aim(...view, visit, figure.solid?.cover);
       figure.solid?.learn(visit, this.#playable);
       player.seek(frame);
@@ -698,7 +693,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   // The module of another look than lines.
   async #display() {
     if (this.look === "oled") this.#looks.oled ??= await import("./pantin-oled.js");
-    if (this.look === "solid") this.#looks.solid ??= await import("./pantin-solid.js");
+    if (this.look === "solid") await (this.#looks.solid ??= await import("./pantin-solid.js")).dressed(this);
   }
 
   // Calls the script that writes files, which is loaded only now.
@@ -767,6 +762,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       }
       this.stage.setAttribute("aria-label", this.getAttribute("aria-label") ?? words.figure);
       this.scrubber.setAttribute("aria-label", words.time);
+      this.#full?.setAttribute("aria-label", words.full);
       this.#frame.classList.toggle("waits", this.#waits && paused);
       this.#frame.classList.toggle("runs", !paused);
     }
@@ -786,14 +782,19 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 }
 
-// Properties that are attributes of the same name, and what they are without it.
-for (const [name, standard] of Object.entries({ loading: "eager", poster: "", crossOrigin: null, segment: "", up: "", align: "center", loop: false, autoplay: false })) {
-  const isFlag = standard === false;
+// Properties that are attributes of the same name, and what they make of the attribute's text.
+const isThere = (text) => text !== null;
+const anyText = (text) => text ?? "";
+const oneOf = (...words) => (text) => words.find((word) => word === text) ?? words[0];
+for (const [name, read] of Object.entries({
+  src: (text) => text, look: oneOf("lines", "solid", "oled"), fit: oneOf("follow", "whole"), align: oneOf("center", "left", "right"), loading: oneOf("eager", "lazy"),
+  from: (text) => +text || 0, to: (text) => +text || Infinity, poster: anyText, crossOrigin: (text) => text, segment: anyText, up: anyText, loop: isThere, autoplay: isThere,
+})) {
   Object.defineProperty(PantinPlayer.prototype, name, {
     configurable: true,
     enumerable: true,
-    get() { return isFlag ? this.hasAttribute(name) : (this.getAttribute(name) ?? standard); },
-    set(value) { isFlag ? this.toggleAttribute(name, value) : this.setAttribute(name, value); },
+    get() { return read(this.getAttribute(name)); },
+    set(value) { read === isThere ? this.toggleAttribute(name, value) : this.setAttribute(name, value); },
   });
 }
 

@@ -64,6 +64,8 @@ export interface PantinPlayerAttributes {
   poster?: string;
   crossorigin?: "" | "anonymous" | "use-credentials";
   look?: Look;
+  /** With look "solid": the URL of a character, as text or compiled (docs/LOOKS.md). */
+  "character-look"?: string;
   speed?: number | string;
   from?: number | string;
   to?: number | string;

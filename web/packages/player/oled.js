@@ -48,8 +48,19 @@ export function greysOf(each) {
   return greys;
 }
 
+// The display's color lies over its greys.
+const CSS = `
+:host([look=oled]) .stage { background: #000; }
+:host([look=oled]) canvas { image-rendering: pixelated; }
+:host([look=oled]) .stage::after { content: ""; position: absolute; inset: 0; background: #bff1ff; mix-blend-mode: multiply; pointer-events: none; }
+`;
+let sheet;
+
 // Draws them.
 export function draw(context, each) {
+  const { adoptedStyleSheets } = context.canvas.getRootNode();
+  if (!sheet) (sheet = new CSSStyleSheet()).replaceSync(CSS);
+  if (!adoptedStyleSheets.includes(sheet)) adoptedStyleSheets.push(sheet);
   const image = context.createImageData(WIDTH, HEIGHT);
   const pixels = new Uint32Array(image.data.buffer);
   greysOf(each).forEach((grey, index) => (pixels[index] = 0xff000000 | (grey * 0x10101)));

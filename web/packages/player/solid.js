@@ -12,20 +12,28 @@ const LEG = {
   weak: /hip/, generic: /leg/,
   strong: [/up(per_?)?leg|thigh|femur|oberschenkel/, /lower_?leg|loleg|shin|calf|knee|tibia|unterschenkel/, /foot|ankle|fuss|fu_/],
 };
-// [look] Radii in thousandths of the height: of figures of 80 pixels and more, and of smaller ones.
-const NAMES = ["hip", "knee", "ankle", "shoulder", "elbow", "wrist", "hand", "heel", "toe", "chest", "waist", "pelvis", "neck", "skull"];
-const [LARGE, SMALL] = [[56, 36, 25, 40, 29, 21, 26, 26, 19, 50, 70, 58, 28, 78], [58, 39, 29, 43, 33, 26, 31, 28, 23, 51, 70, 59, 29, 88]]
-  .map((radii) => Object.fromEntries(radii.map((radius, index) => [NAMES[index], radius / 1000])));
-// Heights of a figure for each width of an outline.
-const OUTLINE = 110;
-const COLORS = { shirt: [235, 235, 225], trousers: [70, 92, 150], skin: [240, 190, 150], hair: [96, 60, 44], face: [255, 214, 176], nose: [255, 200, 160], eye: [20, 16, 20] };
+// [look] The default character: radii in thousandths of the height, of figures of 80 pixels and more and of smaller ones; heights of a figure for each width of an
+// outline; colors; how far attachments reach from head, chest and hips in thousandths of the height.
+export const STANDARD = {
+  names: ["hip", "knee", "ankle", "shoulder", "elbow", "wrist", "hand", "heel", "toe", "chest", "waist", "pelvis", "neck", "skull"],
+  radii: [[56, 36, 25, 40, 29, 21, 26, 26, 19, 50, 70, 58, 28, 78], [58, 39, 29, 43, 33, 26, 31, 28, 23, 51, 70, 59, 29, 88]],
+  outline: 110,
+  colors: { shirt: [235, 235, 225], trousers: [70, 92, 150], skin: [240, 190, 150], hair: [96, 60, 44], face: [255, 214, 176], nose: [255, 200, 160], eye: [20, 16, 20] },
+  attachments: [],
+  reaches: [0, 0, 0],
+};
 // How bright shaded sides are, and the heights from the head's joint to the skull's middle: above it, and ahead of it.
 const SHADE = 0.62;
 const SKULL = [0.062, 0.012];
 // Radii at both ends of a side's parts, and joints of a part's far end.
 const SEGMENTS = [["shoulder", "elbow"], ["elbow", "wrist"], ["wrist", "hand"], ["hip", "knee"], ["knee", "ankle"], ["ankle", "toe"]];
-// Parts of a person: pelvis, chest, neck, head, and six of each side.
+// Parts of a person: pelvis, chest, neck, head, six of each side, and what is attached.
 const [CHEST, NECK, HEAD, LIMBS] = [1, 2, 3, 4];
+const PARTS = LIMBS + 2 * SEGMENTS.length;
+// What an attachment hangs on; the hips are another one.
+const [ON_HEAD, ON_CHEST, ON_THIGHS] = [0, 1, 3];
+// Thousandths of the height by which the head counts as nearer than the skull's middle, and an attachment as nearer than it is.
+const [HEAD_OVER, OVER] = [30, 4];
 // Joints at which parts meet, as bits: a part has no outline at a joint where another one was drawn before.
 const [WAIST_JOINT, NECK_JOINT, HEAD_JOINT] = [1, 2, 4];
 const jointOf = (side, index) => 8 << (6 * side + index);
@@ -138,7 +146,7 @@ function measuresOf(bones, { arms, legs, fingers, toes, neck, head }) {
   };
 }
 
-// [hull] The hull of one to three circles: a path of what lies between every two of them, and one of its outline, which is open where `open` circles go on outwards.
+// [hull] The hull of one to four circles: a path of what lies between every two and every three of them, and one of its outline, which is open where `open` circles go on outwards.
 function pathsOf(circles, open) {
   const [path, edge] = [new Path2D(), new Path2D()];
   const centre = (own) => [0, 1].map((axis) => (circles.reduce((sum, circle) => sum + circle[axis], 0) - own[axis]) / Math.max(1, circles.length - 1));
@@ -179,14 +187,15 @@ function pathsOf(circles, open) {
     arc(a, 0, 2 * Math.PI);
     path.closePath();
   }
-  if (circles.length > 2) {
-    const [[ax, ay], [bx, by], [cx, cy]] = circles;
+  const corner = (...triangle) => {
+    const [[ax, ay], [bx, by], [cx, cy]] = triangle;
     const isLeft = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax);
     path.moveTo(ax, ay);
     path.lineTo(...(isLeft ? [cx, cy] : [bx, by]));
     path.lineTo(...(isLeft ? [bx, by] : [cx, cy]));
     path.closePath();
-  }
+  };
+  circles.forEach((a, first) => circles.slice(first + 1).forEach((b, next) => circles.slice(first + next + 2).forEach((c) => corner(a, b, c))));
   return { path, edge };
 }
 
@@ -214,7 +223,7 @@ function paint(context, circles, { color, light, shift, edge, width, open = [] }
 }
 
 // [head] Skull and jaw in the hair's color, and a face that moves across them with the gaze. Vectors are as long as the skull's radius.
-function drawHead(context, { skull, up, face, left }, edge, width) {
+function drawHead(context, { skull, up, face, left }, colors, edge, width) {
   const [x, y, r] = skull;
   // In 256ths of the radius along face, up and left.
   const place = (ahead, above, aside) => [0, 1, 2].map((axis) => (axis < 2 ? skull[axis] : 0) + (face[axis] * ahead + up[axis] * above + left[axis] * aside) / 256);
@@ -225,46 +234,93 @@ function drawHead(context, { skull, up, face, left }, edge, width) {
   const side = r / 4;
   const plain = (circles, color) => paint(context, circles, { color, light: 1 });
   const nose = (ahead) => circle(Math.max(0.56, r / 6), ahead, -56, 0);
-  if (toward < 0.1) paint(context, [nose(271)], { color: COLORS.nose, light: 1, edge, width });
+  if (toward < 0.1) paint(context, [nose(271)], { color: colors.nose, light: 1, edge, width });
   const shaded = (way) => isDetailed && [way, way * 1.5].map((x) => Math.min(9 * 1.5, x / 16));
-  const hull = paint(context, [skull, circle(r * 0.82, 36, -90, 0)], { color: COLORS.hair, light: 1, edge, width, shift: shaded(side) });
+  const hull = paint(context, [skull, circle(r * 0.82, 36, -90, 0)], { color: colors.hair, light: 1, edge, width, shift: shaded(side) });
   const size = toward < 0 ? 0.8 + toward * 0.55 : 0.84;
   if (size > 0.15 && toward > -0.75) {
     context.save();
     context.clip(hull);
-    paint(context, [circle(r * size, 133 + 192 * Math.max(0, -toward), -51, 0)], { color: COLORS.face, light: 1, shift: shaded(side / 2) });
+    paint(context, [circle(r * size, 133 + 192 * Math.max(0, -toward), -51, 0)], { color: colors.face, light: 1, shift: shaded(side / 2) });
     context.restore();
   }
   if (toward > -0.35) {
     for (const aside of [-1, 1]) {
       const [eyeX, eyeY, away] = isDetailed ? place(236, 5, aside * 99) : place(205, 0, aside * 115);
       if (-away * (isDetailed ? 8 : 4) <= r) continue;
-      if (isDetailed) plain([-20, 20].map((above) => circle(Math.max(0.5, r / 10), 220, above, aside * 92)), COLORS.eye);
-      else plain([[eyeX, eyeY + r / 10, 0.6]], COLORS.eye);
+      if (isDetailed) plain([-20, 20].map((above) => circle(Math.max(0.5, r / 10), 220, above, aside * 92)), colors.eye);
+      else plain([[eyeX, eyeY + r / 10, 0.6]], colors.eye);
     }
   }
   if (toward >= 0.1 && isDetailed) {
     const [x, y, radius] = nose(258);
-    paint(context, [[x, y, radius]], { color: COLORS.face, light: SHADE });
-    plain([[x - r / 20, y - r / 16, radius * 0.75]], COLORS.nose);
-  } else if (toward >= 0.1 && toward < 0.84) plain([nose(293)], COLORS.nose);
+    paint(context, [[x, y, radius]], { color: colors.face, light: SHADE });
+    plain([[x - r / 20, y - r / 16, radius * 0.75]], colors.nose);
+  } else if (toward >= 0.1 && toward < 0.84) plain([nose(293)], colors.nose);
+}
+
+// Characters by their URLs: those that have arrived, and promises of them; and what players were told of those that are no good.
+const characters = {};
+const arriving = {};
+const told = new WeakMap();
+const urlOf = (player) => player.getAttribute("character-look");
+
+async function fetched(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${response.status}`);
+  const [{ lookOf }, bytes] = await Promise.all([import("./pantin-looks.js"), response.arrayBuffer()]);
+  characters[url] = lookOf(new Uint8Array(bytes), STANDARD);
+}
+
+// Says what is wrong with a player's character, once, and takes it back.
+function report(player, problem = "") {
+  const before = told.get(player) ?? "";
+  if (problem ? player.trouble === problem : !before) return;
+  told.set(player, problem);
+  if (problem || player.trouble === before) player.trouble = problem;
+  if (problem) player.dispatchEvent(new CustomEvent("error", { detail: problem }));
+}
+
+/** Resolves once the character of a player's attribute is there. The player reports one that is no good, and its figure is the default character. */
+export async function dressed(player) {
+  const url = urlOf(player);
+  if (!url) return;
+  try {
+    await (arriving[url] ??= fetched(url));
+  } catch ({ message }) {
+    // Who loads it again tries again.
+    delete arriving[url];
+    characters[url] = { ...STANDARD, problem: `${url}: ${message}` };
+  }
+  if (urlOf(player) === url) report(player, characters[url].problem);
 }
 
 /**
- * The solid look of a figure of figure.js, unless it is `known`; nothing for a rig that can only be drawn in lines. `cover` makes room for it: `aim` of the figure takes it. `learn` finds out where the
- * head looks, by the poses for which the camera was set up; `draw` draws the pose that was placed.
+ * The solid look of a figure of figure.js, unless it is `known`, as the character of the player's attribute; nothing for a rig that can only be drawn in lines. `cover` makes room for it: `aim` of the
+ * figure takes it. `learn` finds out where the head looks, by the poses for which the camera was set up; `draw` draws the pose that was placed.
  */
-export function solidOf(clip, figure, known) {
-  if (known) return known;
+export function solidOf(clip, figure, known, player) {
+  const url = urlOf(player);
+  const solid = known ?? volumeOf(clip, figure);
+  const awaits = url && !characters[url];
+  // It stays as it is until its character has arrived, and is drawn again then.
+  if (!known || !awaits) solid?.dress(characters[url] ?? STANDARD);
+  if (awaits) dressed(player).then(() => player.turn(0, 0));
+  else report(player, characters[url]?.problem);
+  return solid;
+}
+
+function volumeOf(clip, figure) {
   const { bones, crown, size } = innerOf(figure);
   const person = personOf(clip, innerOf(figure));
-  const order = person ? [...Array(LIMBS + 2 * SEGMENTS.length).keys()] : bones.flatMap(({ isShown, parent }, index) => (isShown || (crown === index && parent >= 0) ? [index] : []));
+  let order = person ? [...Array(PARTS).keys()] : bones.flatMap(({ isShown, parent }, index) => (isShown || (crown === index && parent >= 0) ? [index] : []));
   if (!order.length || order.length > MOST_PARTS) return;
   const measures = person ? measuresOf(bones, person) : { height: size };
   let headAxes = [[0, 1, 0], [0, 0, 1], [1, 0, 0]];
   let learned = 0;
   // Of the pose that is drawn: the height in pixels and in units of depth, radii, joints, and the head.
-  let [inner, height, depth, radii, head] = [{}, 0, 1, LARGE, null];
+  let [inner, height, depth, radii, head] = [{}, 0, 1, {}, null];
+  let [look, sizes] = [STANDARD, []];
   const pixelsOf = (length) => (length * inner.scale) / inner.seen / 16;
   const joint = (index) => [inner.points[3 * index] / 16, inner.points[3 * index + 1] / 16, inner.points[3 * index + 2]];
   const depthOf = (index) => inner.points[3 * index + 2];
@@ -275,7 +331,7 @@ export function solidOf(clip, figure, known) {
     inner = innerOf(figure);
     height = pixelsOf(measures.height);
     depth = (measures.height * 8192) / inner.seen;
-    radii = height < 80 ? SMALL : LARGE;
+    radii = sizes[height < 80 ? 1 : 0];
   };
 
   const waist = () => (person.waist < 0 ? between(joint(person.hips), joint(person.neck), 0.4) : joint(person.waist));
@@ -303,6 +359,34 @@ export function solidOf(clip, figure, known) {
     head = { skull: [x, y, radius], up, face, left, depth: place[2] + (up[2] / radius) * SKULL[0] * depth };
   };
 
+  // [attach] An anchor: its origin, and left, up and ahead, each as long as `length` pixels or thousandths of the height. Axes are right, down and away.
+  const way = (from, to) => unit([0, 1, 2].map((axis) => inner.places[3 * to + axis] - inner.places[3 * from + axis]));
+  const anchorOf = (anchor, left) => {
+    if (anchor === ON_HEAD) return { origin: [head.skull[0], head.skull[1], head.depth], axes: [head.left, head.up, head.face], length: head.skull[2], thousandths: radii.skull * 1000 };
+    const [one, other] = (anchor === ON_CHEST ? person.arms : person.legs).map(([joint]) => joint);
+    const leftward = way(other, one);
+    const [hip, knee] = person.legs[left < 0 ? 1 : 0];
+    const [origin, up] = anchor === ON_THIGHS ? [joint(hip), way(knee, hip)] : [between(joint(one), joint(other), 0.5), way(person.hips, person.neck)];
+    const length = height * zoomOf(origin[2]);
+    return { origin, axes: [leftward, up, cross(leftward, up)].map((axis) => axis.map((x) => x * length)), length, thousandths: 1000 };
+  };
+  const along = ({ axes }, place) => [0, 1, 2].map((index) => axes.reduce((sum, axis, of) => sum + axis[index] * place[of], 0));
+  const attachedPart = ({ anchor, color, circles }) => ({
+    color, ends: [], covers: 0,
+    circles: circles.map((place) => {
+      const frame = anchorOf(anchor, place[0]);
+      const [x, y] = along(frame, place).map((part) => part / frame.thousandths);
+      return [frame.origin[0] + x, frame.origin[1] + y, (place[3] * frame.length) / frame.thousandths];
+    }),
+  });
+  // How far away it counts as: a skirt as much as the nearer thigh.
+  const attachedKey = ({ anchor, circles }, thighs) => {
+    if (anchor === ON_THIGHS) return Math.min(...thighs) - (depth * OVER) / 1000;
+    const frame = anchorOf(anchor, 0);
+    const away = circles.reduce((sum, place) => sum + along(frame, place)[2] / frame.length, 0) / circles.length;
+    return frame.origin[2] + (depth * (away - (anchor === ON_HEAD ? HEAD_OVER : 0) - OVER)) / 1000;
+  };
+
   // [parts] How far away the parts of a person count as. Upper arm and thigh count as what is farther from the trunk, so that they lie over it or under it as a whole.
   const personKeys = () => {
     const [arms, legs] = [person.arms, person.legs].map((limbs) => limbs.map((limb) => limb.map(depthOf)));
@@ -313,7 +397,7 @@ export function solidOf(clip, figure, known) {
       const [[shoulder, elbow, wrist], [hip, knee, ankle]] = [arms[side], legs[side]];
       return [mix(shoulder, elbow, 0.75), (elbow + wrist) / 2, mix(wrist, hand(side)[2], 0.7), mix(hip, knee, 0.7), (knee + ankle) / 2, mix(ankle, foot(side)[1][2], 0.6) - depth / 200];
     });
-    return [pelvis + depth / 200, trunk, head.depth - depth * 0.024, head.depth - depth * 0.03, ...sides];
+    return [pelvis + depth / 200, trunk, head.depth - depth * 0.024, head.depth - (depth * HEAD_OVER) / 1000, ...sides, ...look.attachments.map((own) => attachedKey(own, thighs))];
   };
   // Puts the farthest part first. The first picture is sorted exactly, later ones from the order of the one before.
   let isSorted = false;
@@ -333,9 +417,9 @@ export function solidOf(clip, figure, known) {
   const trunkPart = (part) => {
     if (part === NECK) {
       const to = joint(person.head);
-      return { circles: [circle(between(joint(person.neck), to, measures.neckStart), "neck"), circle(to, "neck")], color: COLORS.skin, ends: [[0, NECK_JOINT], [1, HEAD_JOINT]], covers: 0 };
+      return { circles: [circle(between(joint(person.neck), to, measures.neckStart), "neck"), circle(to, "neck")], color: look.colors.skin, ends: [[0, NECK_JOINT], [1, HEAD_JOINT]], covers: 0 };
     }
-    const [limbs, inwards, radius, color, first] = part === CHEST ? [person.arms, 0.24, "chest", COLORS.shirt, 0] : [person.legs, 0.1, "pelvis", COLORS.trousers, 3];
+    const [limbs, inwards, radius, color, first] = part === CHEST ? [person.arms, 0.24, "chest", look.colors.shirt, 0] : [person.legs, 0.1, "pelvis", look.colors.trousers, 3];
     const ends = limbs.map(([limb]) => joint(limb));
     const middle = between(...ends, 0.5);
     const circles = ends.map((end) => circle(between(end, middle, inwards), radius));
@@ -346,14 +430,15 @@ export function solidOf(clip, figure, known) {
     const side = +(part >= LIMBS + SEGMENTS.length);
     const index = (part - LIMBS) % SEGMENTS.length;
     const [limb, at] = index < 3 ? [person.arms[side], index] : [person.legs[side], index - 3];
-    const own = colors[side];
+    const [own, end] = [colors[side], side ? colors[2] : colors[0]];
+    const { skin, trousers } = look.colors;
     const [from, to] = SEGMENTS[index];
     const [heel, toes] = index === 5 ? foot(side) : [];
     const far = index === 2 ? hand(side) : (toes ?? joint(limb[at + 1]));
     const circles = [circle(joint(limb[at]), from), circle(far, to)];
     if (heel) circles.push(circle(heel, "heel"));
     return {
-      circles, color: [own, COLORS.skin, own, COLORS.trousers, COLORS.trousers, own][index], isRight: side === 1, depth: depthOf(limb[Math.min(at + 1, 2)]),
+      circles, color: [own, skin, end, trousers, trousers, end][index], isRight: side === 1, depth: depthOf(limb[Math.min(at + 1, 2)]),
       ends: [[0, jointOf(side, index)], ...(at < 2 ? [[1, jointOf(side, index + 1)]] : [])], covers: 0,
     };
   };
@@ -361,7 +446,7 @@ export function solidOf(clip, figure, known) {
   const bonePart = (index, colors) => {
     const { parent, part, offset } = bones[index];
     const radius = Math.max(0.5, pixelsOf(clamp(Math.hypot(...offset) / 6, size / 60, size / 22)));
-    const color = part === LEFT ? colors[0] : part === RIGHT ? colors[1] : COLORS.shirt;
+    const color = part === LEFT ? colors[0] : part === RIGHT ? colors[1] : look.colors.shirt;
     // Bits of the first joints alone.
     const bit = (joint) => (joint < 31 ? 1 << joint : 0);
     return { circles: [round(joint(parent), radius), round(joint(index), radius * 0.75)], color, isRight: part === RIGHT, depth: boneDepth(index), ends: [[0, bit(parent)], [1, bit(index)]], covers: 0 };
@@ -409,12 +494,23 @@ export function solidOf(clip, figure, known) {
   };
 
   return {
+    // Takes a character.
+    dress(character) {
+      if (character === look && sizes.length) return;
+      look = character;
+      sizes = look.radii.map((radii) => Object.fromEntries(radii.map((radius, index) => [STANDARD.names[index], radius / 1000])));
+      if (person) order = [...Array(PARTS + look.attachments.length).keys()];
+      isSorted = false;
+    },
     cover: person && ((widen) => {
       measure();
       const around = (index, part) => widen(...joint(index).slice(0, 2).map((x) => x * 16), Math.min(32767, 16 * pixelsOf(measures.height) * part * zoomOf(depthOf(index))));
       for (const index of [...bones.keys()]) if (bones[index].isShown) for (const end of [index, bones[index].parent]) around(end, 0);
-      around(person.head, SKULL[0] + LARGE.skull);
-      for (const [, , wrist] of person.arms) around(wrist, 0.044 + LARGE.hand);
+      const [ofHead, ofChest, ofHips] = look.reaches.map((reach) => reach / 1000);
+      around(person.head, SKULL[0] + Math.max(sizes[0].skull, ofHead));
+      for (const [, , wrist] of person.arms) around(wrist, 0.044 + sizes[0].hand);
+      if (ofChest) around(person.neck, ofChest);
+      if (ofHips) around(person.hips, ofHips);
     }),
     // [mod] The mean over poses of where the shoulders face, in the head's own axes: rest poses of some captures do not say it.
     learn(visit, poses) {
@@ -443,21 +539,23 @@ export function solidOf(clip, figure, known) {
       if (person) turnHead();
       sort();
       const isDark = paper[0] + 2 * paper[1] + paper[2] < 512;
-      const edge = css(isDark ? [6, 8, 14] : middle.slice(0, 3));
-      const width = clamp(Math.min(height, rows) / OUTLINE, 1, 8);
+      const stated = look.colors;
+      const edge = css(stated.edge ?? (isDark ? [6, 8, 14] : middle.slice(0, 3)));
+      // Whole pixels, as in the firmware.
+      const width = Math.floor(clamp((Math.min(height, rows) + 0.5) / look.outline, 1, 8));
       const over = (part) => between(paper.slice(0, 3), ground, part);
       context.save();
       context.translate(aside, 0);
-      floor(context, { stage: over(0.16), line: over(0.3), shadow: isDark ? paper.slice(0, 3).map((x) => x * 0.7) : over(0.4) });
+      floor(context, { stage: stated.stage ?? over(0.16), line: stated.floor ?? over(0.3), shadow: stated.shadow ?? (isDark ? paper.slice(0, 3).map((x) => x * 0.7) : over(0.4)) });
       let drawn = 0;
       for (const index of order) {
         if (person && index === HEAD) {
-          drawHead(context, head, edge, width);
+          drawHead(context, head, stated, edge, width);
           drawn |= HEAD_JOINT;
           continue;
         }
-        const colors = [left, right];
-        const part = !person ? bonePart(index, colors) : index < LIMBS ? trunkPart(index) : sidePart(index, colors);
+        const colors = [stated.left ?? left, stated.right ?? right, stated["right-end"] ?? right];
+        const part = !person ? bonePart(index, colors) : index < LIMBS ? trunkPart(index) : index < PARTS ? sidePart(index, colors) : attachedPart(look.attachments[index - PARTS]);
         const { circles, color, isRight, ends } = part;
         const bright = clamp(0.94 - ((part.depth ?? 0) / depth) * 0.9, SHADE, 1) * (isRight ? 0.9 : 1);
         // 0.42 of the mean radius towards the lower right.

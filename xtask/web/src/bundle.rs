@@ -11,13 +11,15 @@ use crate::{inline, script, tools};
 /// A module that the build writes: the face's model as a text.
 const FACE_MODEL: &str = "player/face-model.js";
 /// The modules of each script of the player, below `web/packages`. The last one keeps its exports.
-pub const SCRIPTS: [(&str, &[&str]); 12] = [
+pub const SCRIPTS: [(&str, &[&str]); 14] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
     ("pantin-stream.js", &["player/stream.js"]),
     ("pantin-export.js", &["player/export.js"]),
     ("pantin-oled.js", &["player/oled.js"]),
     ("pantin-solid.js", &["player/solid.js"]),
+    ("pantin-looks.js", &["player/looks.js"]),
+    ("pantin-keys.js", &["decoder/keys.js"]),
     ("pantin-words.js", &["player/words.js"]),
     ("pantin-table.js", &["player/table.js"]),
     ("pantin-face.js", &["decoder/names.js", FACE_MODEL, "player/face-lines.js", "player/face.js"]),

@@ -9,8 +9,11 @@ use pantin::Clip;
 
 use crate::site::{FACE, PLAYER};
 
-/// Writes the page of a clip, from a site that was built. A clip with scalars gets what draws a face, too. What is loaded later, such as the script that
-/// saves pictures, is looked for beside the page.
+/// What plays key clips.
+const KEYS: &str = "pantin-keys.js";
+
+/// Writes the page of a clip, from a site that was built. A clip with scalars gets what draws a face, too, and a key clip what plays its keys. What is loaded later,
+/// such as the script that saves pictures, is looked for beside the page.
 pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
     let opened = Clip::new_checked(clip).map_err(|error| anyhow::anyhow!("{error}"))?;
     let has_scalars = opened.rig().channels() > opened.rig().joint_channels();
@@ -18,15 +21,17 @@ pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
     let script = |name: &str| String::from_utf8(read(name)?).context("a script that is not UTF-8");
     let mut player = script(PLAYER[0])?;
     let mut before = String::new();
-    if has_scalars {
-        let [face] = FACE;
-        let import = format!("import(\"./{face}\")");
+    for (name, variable, wanted) in [(FACE[0], "pantinFace", has_scalars), (KEYS, "pantinKeys", opened.has_keys())] {
+        if !wanted {
+            continue;
+        }
+        let import = format!("import(\"./{name}\")");
         ensure!(player.contains(&import), "no {import}");
-        before = format!(
-            "const pantinFace=URL.createObjectURL(new Blob([Uint8Array.from(`{}`,letter=>letter.charCodeAt())],{{type:\"text/javascript\"}}));",
-            text(&read(face)?)
+        before += &format!(
+            "const {variable}=URL.createObjectURL(new Blob([Uint8Array.from(`{}`,letter=>letter.charCodeAt())],{{type:\"text/javascript\"}}));",
+            text(&read(name)?)
         );
-        player = player.replace(&import, "import(pantinFace)");
+        player = player.replace(&import, &format!("import({variable})"));
     }
     ensure!(!player.contains("</"), "{}: a tag in the script ends it", PLAYER[0]);
     let title: String = title.chars().filter(|letter| !"<>&".contains(*letter)).collect();

@@ -13,7 +13,7 @@ use serde_json::json;
 use xtask::build::{self, Build};
 use xtask::{paths, setup};
 
-use crate::{bundle, inline, pack, script, tools};
+use crate::{bundle, compare, inline, pack, script, tools};
 
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -34,11 +34,14 @@ pub struct Size {
 
 /// What a page that plays clips loads.
 pub const PLAYER: [&str; 1] = ["pantin-player.js"];
-/// What it loads too: once a picture has the focus, for files of more than a packet, for the solid look and the display's, for scalars that drive no face, for a table of poses, in other languages than English.
-pub const OTHERS: [&str; 7] = [
+/// What it loads too: once a picture has the focus, for files of more than a packet, for key clips, for the solid look and its characters, for the display's look, for scalars that drive no face, for a table of poses, in other
+/// languages than English.
+pub const OTHERS: [&str; 9] = [
     "pantin-controls.js",
     "pantin-stream.js",
+    "pantin-keys.js",
     "pantin-solid.js",
+    "pantin-looks.js",
     "pantin-oled.js",
     "pantin-bars.js",
     "pantin-table.js",
@@ -65,14 +68,17 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
     for (name, modules) in bundle::SCRIPTS {
         write(&out.join(name), &tools::minified(bundle::bundle(&packages, modules)?.into_bytes())?)?;
     }
+    clips(out)?;
+    character(out)?;
     for entry in page {
         let name = entry.file_name().unwrap_or_default();
-        let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
+        let mut bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
+        if name == "index.html" {
+            bytes = compare::filled(out, &String::from_utf8(bytes).context("index.html")?)?.into_bytes();
+        }
         let scripted = entry.extension().is_some_and(|extension| extension == "js");
         write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
     }
-    clips(out)?;
-    character(out)?;
     for clip in inlined {
         let bytes = std::fs::read(clip).with_context(|| clip.display().to_string())?;
         let name = clip.file_stem().unwrap_or_default();
@@ -145,13 +151,32 @@ fn clips(out: &Path) -> Result<()> {
     write(&out.join("clips.json"), json!(list).to_string().as_bytes())
 }
 
-/// Our character, with the picture of its state machine.
+/// Our character, with the picture of its state machine, the inputs that do something in each state, and our characters of the solid figure.
 fn character(out: &Path) -> Result<()> {
     write(&out.join("clips/character.ptb"), &std::fs::read(paths::root().join("motions/character.ptb"))?)?;
     let path = paths::root().join("motions/character.toml");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let source = machine::Source::parse(&machine::Text { name: "character.toml", text: &text })?;
+    write(&out.join("clips/character.json"), inputs(&source).to_string().as_bytes())?;
+    for look in listed(&paths::root().join("motions/looks"))? {
+        let bytes = std::fs::read(&look).with_context(|| look.display().to_string())?;
+        write(&out.join("clips").join(look.file_name().unwrap_or_default()), &bytes)?;
+    }
     write(&out.join("clips/character.svg"), machine::graph::svg(&source).as_bytes())
+}
+
+/// The inputs that do something in each state of a machine, by the state's name: they lead to another one, or play a layer.
+fn inputs(source: &machine::Source) -> serde_json::Value {
+    let states = source.states.iter().map(|state| {
+        let name = state.name.get_ref();
+        let rows = state.transitions.iter().chain(&source.any).map(|row| row.get_ref());
+        let led = rows.flat_map(|row| [&row.input, &row.released]).flatten();
+        let layers = source.layers.iter().map(|layer| layer.get_ref());
+        let played =
+            layers.filter(|layer| layer.states.as_ref().is_none_or(|states| states.contains(name))).map(|layer| &layer.input);
+        (name.clone(), json!(led.chain(played).collect::<Vec<_>>()))
+    });
+    states.collect::<serde_json::Map<_, _>>().into()
 }
 
 /// Several motions in turn, within [`MEDLEY_CM`].

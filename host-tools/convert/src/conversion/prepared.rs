@@ -308,13 +308,11 @@ impl Prepared {
                 return Ok(None);
             }
         };
-        let [more, fewer] = [bytes.len().saturating_sub(by_segments.len()), by_segments.len().saturating_sub(bytes.len())];
-        let (text, written) = match keys {
-            UseKeys::Always if more > 0 => (format!("keys: segments within the bound would take {more} bytes less"), true),
-            UseKeys::IfSmaller if fewer == 0 => {
-                (format!("keys: segments within the bound take {more} bytes less than the motion's keys"), false)
-            }
-            _ => (format!("keys: a key clip, which takes {fewer} bytes less than segments within the bound"), true),
+        let [own, other] = [bytes.len(), by_segments.len()];
+        let written = keys == UseKeys::Always || own < other;
+        let text = match written {
+            true => format!("keys: a key clip of {own} bytes; segments within the bound would take {other} bytes"),
+            false => format!("keys: segments within the bound, {other} bytes; a key clip would take {own} bytes"),
         };
         let note = Note::info(NoteKind::Keys, text);
         notes.push(if written && keys == UseKeys::IfSmaller { note.remedy(Remedy::WriteSegments) } else { note });

@@ -40,9 +40,9 @@ fn the_smaller_clip_is_written_and_a_note_says_which() {
         (note, has_keys(&folder.join(name)))
     };
     let (note, keys) = convert(&walk, "walk.ptn", &[]);
-    assert!(keys && note.contains("keys: a key clip, which takes") && note.contains("; --segments writes"), "{note}");
+    assert!(keys && note.contains("keys: a key clip of ") && note.contains("; --segments writes"), "{note}");
     let (note, keys) = convert(&bow, "bow.ptn", &["--max-error", "3cm"]);
-    assert!(!keys && note.contains("keys: segments within the bound take"), "{note}");
+    assert!(!keys && note.contains("keys: segments within the bound, ") && note.contains("a key clip would take "), "{note}");
     let (note, keys) = convert(&walk, "large.ptn", &["--scale", "1000", "--max-error", "0.5%"]);
     assert!(!keys && note.contains("there is no key clip of this motion"), "{note}");
     // Exact coding keeps rotations to 0.006 degrees and places to a part of the figure.
