@@ -1530,28 +1530,27 @@ void pantin_animator_read_state(const pantin_character *c, uint8_t state, pantin
     row->count = table_byte(c, at + 7);
 }
 
+/* Finds the name of an index among all names. Returns 0 if it cannot be read. */
+static int name_at(const pantin_character *c, uint32_t index, pantin_name *name) {
+    uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
+    name->source = c->bank.source;
+    name->source->failed = PANTIN_OK;
+    for (; at < c->table_end; index--) {
+        name->length = pantin_byte(name->source, at);
+        name->start = at + 1;
+        if (index == 0) return name->source->failed == PANTIN_OK;
+        at += 1 + name->length;
+    }
+    return 0;
+}
+
 /* The index of a name among `count` that stand behind `before` others. */
 static uint8_t find_name(const pantin_character *c, uint32_t before, uint8_t count, const char *name) {
-    uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
     uint8_t index;
     pantin_name own;
-    if (!name || !count) return PANTIN_NO_INPUT;
-    own.source = c->bank.source;
-    own.source->failed = PANTIN_OK;
-    for (; at < c->table_end; at += 1 + own.length) {
-        own.length = pantin_byte(own.source, at);
-        own.start = at + 1;
-        if (before > 0) {
-            before--;
-            continue;
-        }
-        for (index = 0; index < count && at < c->table_end; index++) {
-            own.length = pantin_byte(own.source, at);
-            own.start = at + 1;
-            if (own.source->failed == PANTIN_OK && pantin_name_is(&own, name)) return index;
-            at += 1 + own.length;
-        }
-        break;
+    if (!name) return PANTIN_NO_INPUT;
+    for (index = 0; index < count && name_at(c, before + index, &own); index++) {
+        if (pantin_name_is(&own, name) && own.source->failed == PANTIN_OK) return index;
     }
     return PANTIN_NO_INPUT;
 }
@@ -1799,6 +1798,10 @@ pantin_result pantin_character_second(pantin_character *c, pantin_track *track, 
 }
 
 uint8_t pantin_character_state(const pantin_character *c, const char *name) { return find_name(c, 0, c->counts[STATES], name); }
+
+int pantin_character_state_name(const pantin_character *c, uint8_t state, pantin_name *name) {
+    return state < c->counts[STATES] && name_at(c, state, name);
+}
 
 uint8_t pantin_character_parameter(const pantin_character *c, const char *name) { return find_name(c, c->counts[STATES], c->counts[PARAMETERS], name); }
 

@@ -214,6 +214,9 @@ uint8_t pantin_character_input(const pantin_character *character, const char *na
 uint8_t pantin_character_parameter(const pantin_character *character, const char *name);
 uint8_t pantin_character_state(const pantin_character *character, const char *name);
 
+/* The name of a state, such as that of `character->state`. Returns 1, or 0 if there is none or it cannot be read. */
+int pantin_character_state_name(const pantin_character *character, uint8_t state, pantin_name *name);
+
 /* Fires an input, which the next update alone sees; holds it down or lets it go. What the table lacks does nothing. */
 void pantin_character_fire(pantin_character *character, uint8_t input);
 void pantin_character_hold(pantin_character *character, uint8_t input, int down);

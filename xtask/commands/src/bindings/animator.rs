@@ -10,6 +10,7 @@ use anyhow::{Context, Result, ensure};
 use harness::{paths, vectors};
 use pantin::Clip;
 use pantin_animator::machine::Table;
+pub use feet::own_bank;
 use reference::{Lent, Sequence};
 use tempfile::TempDir;
 

@@ -73,8 +73,7 @@ transitions = [{ to = \"idle\", end = true }]",
 
 /// All banks; without captured clips those of our own.
 pub fn banks(folder: &TempDir) -> Result<Vec<FeetBank>> {
-    let bytes = machine(folder, &paths::root().join("motions/character.ptb"), &own_machine()?)?;
-    let mut banks = vec![FeetBank { name: "ours".into(), bytes, same_form: true }];
+    let mut banks = vec![FeetBank { name: "ours".into(), bytes: own_bank(folder)?, same_form: true }];
     let motions: Vec<PathBuf> = MOTIONS.iter().map(|name| paths::root().join("motions/library").join(name).with_extension("keys")).collect();
     let motions: Vec<&Path> = motions.iter().map(PathBuf::as_path).collect();
     for (name, options) in FORMS {
@@ -97,6 +96,11 @@ pub fn banks(folder: &TempDir) -> Result<Vec<FeetBank>> {
         println!("   no captured clips in {}: set PANTIN_DATA", data.display());
     }
     Ok(banks)
+}
+
+/// Our character with its feet held.
+pub fn own_bank(folder: &TempDir) -> Result<Vec<u8>> {
+    machine(folder, &paths::root().join("motions/character.ptb"), &own_machine()?)
 }
 
 /// The text of our character with its feet held, and transitions that wait.
