@@ -226,7 +226,8 @@ void pantin_character_set(pantin_character *character, uint8_t parameter, int16_
 
 /* Lets time pass, then takes the transition whose condition holds. Events that were not taken are dropped first. On an error of a clip that cannot be
  * opened, or for which there is too little memory, the old state goes on. A read that fails takes the whole update back, as in pantin_animator_update: state,
- * inputs and events are those of before, and the update may be repeated. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers or feet, and
+ * inputs and events are those of before, and the update may be repeated; the pose of a character with feet that had just entered a state can differ from the one
+ * before in last bits. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers or feet, and
  * the memory was neither lent nor declared absent. */
 pantin_result pantin_character_update(pantin_character *character, uint32_t elapsed_us);
 
