@@ -8,7 +8,7 @@
 #include "file.h"
 #include "pantin_feet.h"
 
-enum { CHANNELS = 128, PAGE = 128, UPDATES = 900, STEP_US = 33333, LAYERS = 4 };
+enum { CHANNELS = 160, PAGE = 128, UPDATES = 900, STEP_US = 33333, LAYERS = 4 };
 
 /* A character with its memory, and a file of which one read fails. */
 typedef struct {

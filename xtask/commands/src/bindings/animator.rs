@@ -150,7 +150,7 @@ pub fn feet(folder: &TempDir) -> Result<()> {
         let script = reference::inputs(&table, FEET_UPDATES, &mut numbers);
         played += compare(folder, &programs, &format!("feet of {}", bank.name), &others, &script, lent)?;
         parts(folder, &programs, &bank.bytes)?;
-        if bank.name == "captured" || bank.name == "ours" {
+        if bank.name == "ours" {
             reads(folder, &write(folder, "feet.ptb", &bank.bytes)?)?;
         }
     }
