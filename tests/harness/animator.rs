@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use fixed::types::I16F16;
 use pantin::{Angle, ChannelState, Clip};
+use pantin_animator::machine::TableError;
 use pantin_animator::machine::{LAYERS, SECTION, Table};
 use pantin_animator::session::{Input, Session};
-use pantin_animator::{Animator, Character, LayerWorkspace, Placement, Transition, Workspace};
+use pantin_animator::{Animator, Character, Error, Feet, LayerWorkspace, Placement, Transition, Workspace};
 
 /// Memory for every clip of the tests.
 type Room = Workspace<4096, 512>;
@@ -94,6 +95,12 @@ pub fn recorded(text: &str, table: &Table<'_>, rate: u64) -> Option<String> {
         let _ = writeln!(script, "u {}", time(picture) - time(picture - 1));
     }
     Some(script)
+}
+
+/// Updates of what [`steer`] prints in which a foot was held.
+pub fn held(text: &str) -> usize {
+    let is_held = |line: &&str| line.split(' ').skip(2).take(2).any(|joint| joint != "65535");
+    text.lines().skip(1).filter(is_held).count()
 }
 
 /// A bank's table with anything in it that its rules nearly allow; `bank` has no table of its own.
@@ -217,14 +224,31 @@ pub fn play(clips: &[Clip<'_>], script: &str) -> String {
     text
 }
 
-/// What the state machine of a bank makes of a script, without feet; with `second` states blend and layers play. "refused" if the bank has no machine that
-/// plays.
-pub fn steer(bank: &[u8], second: bool, script: &str) -> String {
+/// What is lent to a character besides its own memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Lent {
+    /// States blend and layers play.
+    pub second: bool,
+    /// Feet are held.
+    pub feet: bool,
+}
+
+/// The state of a character and the joints at which its feet are held, then what its animator is at.
+fn print_state(text: &mut String, character: &mut Character<'_, '_>) {
+    let held = [0, 1].map(|foot| character.feet().and_then(|feet| feet.held(foot)).unwrap_or(u16::MAX));
+    let _ = write!(text, "{} {} {} ", character.state(), held[0], held[1]);
+    print(text, character.animator());
+}
+
+/// What the state machine of a bank makes of a script. "refused" if the bank has no machine that plays.
+pub fn steer(bank: &[u8], lent: Lent, script: &str) -> String {
     let mut text = String::new();
     let mut memory = Box::new(Room::new());
     let (mut states, mut values) = (vec![ChannelState::NEW; 4096], vec![0; 512]);
     let mut layers = vec![LayerWorkspace::<4096, 512>::new(); LAYERS];
+    let mut feet = Feet::new();
     let Ok(mut character) = Character::new(bank, memory.lend()) else { return "refused\n".into() };
+    let Lent { second, feet: held } = lent;
     if second && character.lend_second(&mut states, &mut values).is_err() {
         return "refused\n".into();
     }
@@ -234,8 +258,10 @@ pub fn steer(bank: &[u8], second: bool, script: &str) -> String {
             return "refused\n".into();
         }
     }
-    let _ = write!(text, "{} ", character.state());
-    print(&mut text, character.animator());
+    if held && !matches!(character.lend_feet(&mut feet), Ok(()) | Err(Error::Machine(TableError::Missing))) {
+        return "refused\n".into();
+    }
+    print_state(&mut text, &mut character);
     for line in script.lines() {
         let (word, rest) = line.split_at(1);
         let numbers: Vec<i64> = rest.split_whitespace().map(|number| number.parse().unwrap_or(0)).collect();
@@ -249,8 +275,8 @@ pub fn steer(bank: &[u8], second: bool, script: &str) -> String {
                     Ok(updated) => u8::from(updated.entered.is_some()).to_string(),
                     Err(_) => "refused".into(),
                 };
-                let _ = write!(text, "{outcome} {} ", character.state());
-                print(&mut text, character.animator());
+                let _ = write!(text, "{outcome} ");
+                print_state(&mut text, &mut character);
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use harness::animator::{self as reference, Sequence};
+use harness::animator::{self as reference, Lent, Sequence};
 use harness::{paths, setup, vectors};
 use pantin::{Bank, Clip};
 use pantin_animator::machine::{SECTION, Table};
@@ -87,7 +87,7 @@ fn transitions_are_those_of_the_crate() {
 
 /// Compares what becomes of banks, and returns how many play.
 fn compare(folder: &TempDir, what: &str, banks: &[&[u8]], script: &str) -> usize {
-    let outcomes: Vec<String> = banks.iter().map(|bank| reference::steer(bank, true, script)).collect();
+    let outcomes: Vec<String> = banks.iter().map(|bank| reference::steer(bank, Lent { second: true, feet: false }, script)).collect();
     let all: Vec<u8> = banks.iter().flat_map(|bank| [&(bank.len() as u32).to_le_bytes()[..], bank].concat()).collect();
     let files = [write(folder, "banks", all)];
     same(what, &outcomes.concat(), &printed("steer", &write(folder, "inputs", script), &files));

@@ -61,14 +61,14 @@ function steer(file) {
   };
   if (refuses(open)) return out.push("refused\n");
   const { animator } = character;
-  print(`${character.state} `, animator);
+  print(`${character.state} 65535 65535 `, animator);
   for (const [word, ...n] of lines) {
     if (word === "f") character.fire(n[0]);
     else if (word === "h" || word === "r") character.hold(n[0], word === "h");
     else if (word === "s") character.set(...n);
     else {
       const isRefused = refuses(() => character.update(n[0]));
-      print(`${isRefused ? "refused" : +character.entered} ${character.state} `, animator);
+      print(`${isRefused ? "refused" : +character.entered} ${character.state} 65535 65535 `, animator);
     }
   }
 }

@@ -12,6 +12,25 @@
 #include "pantin_figure.h"
 #include "pantin_turn.h"
 
+/* The bytes of a clip or a bank, which stay in flash. */
+class PantinContent {
+  public:
+    pantin_source *open(const uint8_t *bytes, uint32_t length) {
+#ifdef __AVR__
+        pantin_paged(&pages, length, pantin_read_progmem, const_cast<uint8_t *>(bytes), page, sizeof page);
+#else
+        pantin_memory(&pages.source, bytes, length);
+#endif
+        return &pages.source;
+    }
+
+  private:
+    pantin_pages pages;
+#ifdef __AVR__
+    uint8_t page[64];
+#endif
+};
+
 /* A joint, found once by PantinPlayer::find. False if the rig has no such joint. */
 class PantinJoint : public pantin_joint_ref {
   public:
@@ -24,13 +43,9 @@ template <uint16_t CHANNELS> class PantinPlayer {
   public:
     /* Opens a clip or a bank, and shows frame 0 (of a bank: of its first clip). Returns false if it is damaged or has too many channels. */
     bool begin(const uint8_t *bytes, uint32_t length) {
-#ifdef __AVR__
-        pantin_paged(&pages, length, pantin_read_progmem, const_cast<uint8_t *>(bytes), page, sizeof page);
-#else
-        pantin_memory(&pages.source, bytes, length);
-#endif
-        isBank = pantin_open_bank(&bank, &pages.source) == PANTIN_OK;
-        if (!isBank) return pantin_open(&clip, &pages.source, NULL) == PANTIN_OK && start();
+        pantin_source *source = content.open(bytes, length);
+        isBank = pantin_open_bank(&bank, source) == PANTIN_OK;
+        if (!isBank) return pantin_open(&clip, source, NULL) == PANTIN_OK && start();
         pantin_entry first;
         pantin_first_entry(&first, &bank);
         return pantin_next_entry(&first) && pantin_open_entry(&clip, &first) == PANTIN_OK && start();
@@ -159,6 +174,12 @@ template <uint16_t CHANNELS> class PantinPlayer {
     uint32_t frame() const { return player.frame; }
     uint32_t frames() const { return clip.frames; }
 
+    /* For PantinSolid: the player, NULL before begin(); and the pose that is shown. */
+    pantin_player *playing() { return ready ? &player : NULL; }
+    template <class Solid> void setPose(Solid *solid) const {
+        if (ready) pantin_solid_pose(solid, player.pose);
+    }
+
   protected:
     bool start() {
         ready = pantin_start(&player, &clip, pose, CHANNELS, moving, CHANNELS) == PANTIN_OK;
@@ -169,15 +190,12 @@ template <uint16_t CHANNELS> class PantinPlayer {
         return ready;
     }
 
-    pantin_pages pages;
+    PantinContent content;
     pantin_bank bank;
     pantin_clip clip;
     pantin_player player;
     int32_t pose[CHANNELS];
     pantin_channel moving[CHANNELS];
-#ifdef __AVR__
-    uint8_t page[64];
-#endif
     uint64_t due;
     uint32_t last, passed; /* the time of the last update; frames that it reached */
     uint16_t percent = 100;

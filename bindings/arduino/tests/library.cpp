@@ -1,12 +1,16 @@
-// The classes of the library on this machine: what a clip does at its end, seeking, speed, events, and a face whose pixels are those of pantin_face.h.
+// The classes of the library on this machine: what a clip does at its end, seeking, speed, events; a face, a character and a body with volume whose pixels
+// and poses are those of the functions in C.
+#include <PantinCharacter.h>
 #include <PantinFace.h>
 #include <PantinPlayer.h>
+#include <PantinSolid.h>
 #include <pantin_face_data.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
+#include "hero.h"
 #include "run.h"
 
 #define NEED(held) need(held, #held, __LINE__)
@@ -114,8 +118,102 @@ static void faces() {
     NEED(pictures > 200);
 }
 
+static PantinCharacter<BANK_HERO_CHANNELS> hero;
+static PantinCharacter<BANK_HERO_CHANNELS, 0, false> slider;
+static PantinCharacter<BANK_HERO_CHANNELS - 1> narrow;
+
+// A character that buttons steer: it walks on, and its poses are those of the functions in C with feet.
+static void characters() {
+    float cm[2] = {7, 7}, degrees = 7;
+    char name[24] = "x";
+    NEED(!hero.update(0) && !hero.input("go") && !hero.press(PantinInput(0)) && !hero.in("idle") && !hero.event("left_foot_down") && !hero.entered());
+    NEED(!hero.place(cm) && cm[0] == 7 && !hero.heading(degrees) && degrees == 7 && !hero.stateName(name, sizeof name) && !*name && !hero.playing());
+    NEED(!narrow.begin(BANK_HERO, BANK_HERO_LEN) && narrow.error() == PANTIN_NO_ROOM);
+    NEED(!hero.begin(BANK_HERO, 100) && hero.error() != PANTIN_OK && !hero.update(1));
+    NEED(!hero.begin(CLIP_RUN, CLIP_RUN_LEN) && hero.error() != PANTIN_OK);
+    NEED(hero.begin(BANK_HERO, BANK_HERO_LEN) && hero.error() == PANTIN_OK && slider.begin(BANK_HERO, BANK_HERO_LEN));
+    PantinInput go = hero.input("go"), jump = hero.input("jump");
+    NEED(go && jump && !hero.input("nothing") && !hero.parameter("go") && !hero.hold(hero.input("nothing"), true) && !hero.set(PantinInput(), 1));
+    NEED(hero.stateName(name, 3) && std::strcmp(name, "id") == 0 && hero.in("idle") && !hero.in("walk") && !hero.in("nothing"));
+    uint32_t now = 500, steps = 0, held = 0, apart = 0;
+    NEED(hero.update(now) && slider.update(now));
+    for (int i = 0; i < 400; i++) {
+        now += 16;
+        if (i == 20) NEED(hero.hold(go, true) && slider.hold(slider.input("go"), true));
+        if (i == 330) NEED(hero.press(jump) && slider.press(jump));
+        NEED(hero.update(now) && slider.update(now));
+        steps += hero.event("left_foot_down");
+        NEED(!hero.event("no such event"));
+        held += pantin_character_held(&hero.character, 0) != PANTIN_NO_JOINT;
+        apart += std::memcmp(hero.character.animator.pose, slider.character.animator.pose, BANK_HERO_CHANNELS * 4) != 0;
+        if (i == 300) NEED(hero.in("walk") && hero.stateName(name, sizeof name) && std::strcmp(name, "walk") == 0);
+    }
+    NEED(hero.in("jump") && hero.place(cm) && hero.heading(degrees) && degrees > -1 && degrees < 1);
+    NEED(cm[0] * cm[0] + cm[1] * cm[1] > 100 * 100 && cm[0] * cm[0] + cm[1] * cm[1] < 1500 * 1500);
+    NEED(steps > 3 && held > 100 && apart > 50);
+    // While it is stopped nothing moves, and it goes on at another speed.
+    hero.stop();
+    NEED(!hero.update(now += 500));
+    hero.resume();
+    hero.speed(0);
+    uint32_t frame = hero.character.animator.track.player.frame;
+    for (int i = 0; i < 20; i++) NEED(hero.update(now += 16));
+    NEED(hero.character.animator.track.player.frame == frame);
+    hero.home();
+    NEED(hero.update(now += 16) && hero.place(cm) && cm[0] == 0 && cm[1] == 0);
+    hero.speed(100);
+    std::printf("%u steps, a foot held in %u of 400 updates, %u bytes for a character\n", steps, held, static_cast<unsigned>(sizeof hero));
+}
+
+// A display with the calls of TFT_eSPI, and one with those of Adafruit_GFX.
+struct Sent {
+    uint16_t pixels[100][90];
+    void pushImage(int32_t x, int32_t y, int32_t w, int32_t h, uint16_t *data) {
+        NEED(x == 3 && y >= 2 && w == 80 && y + h <= 100);
+        for (int32_t row = 0; row < h; row++) std::memcpy(&pixels[y + row][x], data + row * w, static_cast<size_t>(w) * 2);
+    }
+};
+struct Bitmap {
+    uint16_t pixels[100][90];
+    void drawRGBBitmap(int16_t x, int16_t y, uint16_t *data, int16_t w, int16_t h) {
+        NEED(x == 0 && y >= 0 && w == 80 && y + h <= 96);
+        for (int16_t row = 0; row < h; row++) std::memcpy(&pixels[y + row][x], data + row * w, static_cast<size_t>(w) * 2);
+    }
+};
+
+static PantinSolid<CLIP_RUN_CHANNELS, CLIP_RUN_FIGURE_JOINTS, CLIP_RUN_WORKSPACE> body;
+static PantinSolid<BANK_HERO_CHANNELS, BANK_HERO_FIGURE_JOINTS, BANK_HERO_WORKSPACE> heroBody;
+static Sent sent;
+static Bitmap bitmap;
+
+static void bodies() {
+    static uint16_t rows[16 * 80], whole[96 * 80], swapped[96 * 80];
+    uint32_t lit = 0, now = 0;
+    uint8_t nothing[4] = {0, 0, 0, 0};
+    NEED(!body.draw(player, bitmap, rows, 16) && !body.rows(PANTIN_L8, rows, 80, 0, 1) && !body.look(nothing, sizeof nothing));
+    PantinPlayer<CLIP_RUN_CHANNELS> unopened;
+    NEED(!body.begin(unopened, 80, 96));
+    NEED(player.begin(CLIP_RUN, CLIP_RUN_LEN) && !body.begin(player, 0, 96) && body.begin(player, 80, 96));
+    NEED(hero.begin(BANK_HERO, BANK_HERO_LEN) && heroBody.begin(hero, 80, 96));
+    for (int i = 0; i < 30; i++) {
+        now += 33;
+        player.update(now);
+        NEED(hero.update(now));
+        NEED(body.draw(player, bitmap, rows, 16) && heroBody.draw(hero, sent, rows, 13, 3, 2));
+        NEED(body.rows(PANTIN_RGB565, whole, 160, 0, 96) && heroBody.rows(PANTIN_RGB565_SWAPPED, swapped, 160, 0, 96));
+        for (int y = 0; y < 96; y++) {
+            NEED(std::memcmp(bitmap.pixels[y], whole + 80 * y, 160) == 0 && std::memcmp(&sent.pixels[y + 2][3], swapped + 80 * y, 160) == 0);
+            for (int x = 0; x < 80; x++) lit += whole[80 * y + x] != 0;
+        }
+    }
+    NEED(!body.rows(PANTIN_L8, whole, 80, 0, 97) && lit > 30 * 500);
+    std::printf("%u pixels of a body, %u bytes for it\n", lit, static_cast<unsigned>(sizeof body));
+}
+
 int main() {
     clips();
     faces();
+    characters();
+    bodies();
     return 0;
 }

@@ -2,7 +2,7 @@
  *
  * The steps and the rounding are those of the crate pantin-animator. Sums that wrap there are taken on unsigned numbers. The right shift of a negative
  * number is taken to round down, as in pantin_figure.c. */
-#include "pantin_animator.h"
+#include "pantin_animator_parts.h"
 #include "pantin_parts.h"
 #include "pantin_turn_parts.h"
 
@@ -21,7 +21,6 @@
 /* An eighth of a turn: a rotation farther from frame 0 turns on from lap to lap. */
 #define FAR_TURN 0x20000000u
 
-enum { FREE = 0, EULER, MAP, QUATERNION };
 /* Why a track is stale: its player has to be started again, and a transition has ended by that. */
 enum { STALE = 1, STALE_AND_ENDED };
 
@@ -38,7 +37,7 @@ static int64_t clamp(int64_t x, int64_t low, int64_t high) { return x < low ? lo
 /* Rounded down, as remainders are at least 0. */
 static int64_t quotient(int64_t a, int64_t b) { return a / b - (a % b < 0); }
 
-static uint64_t root_of(uint64_t square) {
+uint64_t pantin_animator_root(uint64_t square) {
     uint64_t root = 0, bit = (uint64_t)1 << 62;
     while (bit > square) bit >>= 2;
     for (; bit; bit >>= 2) {
@@ -59,7 +58,7 @@ static int64_t length_of(const int32_t *v, uint8_t count) {
         uint64_t part = (uint64_t)size_of(v[count]) * size_of(v[count]);
         square = square + part < square ? ~(uint64_t)0 : square + part;
     }
-    return (int64_t)root_of(square);
+    return (int64_t)pantin_animator_root(square);
 }
 
 /* A difference times a weight of 0 to 2^15, rounded down. */
@@ -86,10 +85,10 @@ static void push_group(const pantin_animator_memory *m, uint16_t *count, const p
 
 /* Closes a run of channels of one family. */
 static void close_run(pantin_group *run, uint8_t family, uint8_t exponential, uint8_t is_order) {
-    run->shape = FREE;
-    if (family == 1 && run->length == 3) run->shape = exponential ? MAP : is_order ? EULER : FREE;
-    if (family == 2 && run->length == 4) run->shape = QUATERNION;
-    if (family == 3 && run->length == 3) run->shape = MAP;
+    run->shape = PANTIN_FREE;
+    if (family == 1 && run->length == 3) run->shape = exponential ? PANTIN_MAP : is_order ? PANTIN_EULER : PANTIN_FREE;
+    if (family == 2 && run->length == 4) run->shape = PANTIN_UNIT;
+    if (family == 3 && run->length == 3) run->shape = PANTIN_MAP;
 }
 
 static pantin_result find_groups(pantin_animator *a, const pantin_clip *clip) {
@@ -130,7 +129,7 @@ static pantin_result find_groups(pantin_animator *a, const pantin_clip *clip) {
         run.first = (uint16_t)(rig->channels - rig->scalars + i);
         run.bit = (uint16_t)(rig->joints + i);
         run.length = 1;
-        run.shape = FREE;
+        run.shape = PANTIN_FREE;
         push_group(m, &count, &run);
     }
     a->group_count = count;
@@ -162,18 +161,18 @@ static void nearest_map(int32_t *from, const int32_t *to, uint8_t count) {
 }
 
 /* Writes to `from` what is the same rotation and nearest to `to`, a channel. */
-static void nearest(uint8_t shape, int32_t *from, const int32_t *to, uint8_t count) {
+void pantin_animator_nearest(uint8_t shape, int32_t *from, const int32_t *to, uint8_t count) {
     int64_t dot = 0;
     uint8_t i;
-    if (shape == EULER && count == 3) {
+    if (shape == PANTIN_EULER && count == 3) {
         int32_t other[3];
         other[0] = sum(from[0], HALF_TURN);
         other[1] = difference(HALF_TURN, from[1]);
         other[2] = sum(from[2], HALF_TURN);
         if (apart(other, to, 3) < apart(from, to, 3)) memcpy(from, other, sizeof other);
-    } else if (shape == MAP) {
+    } else if (shape == PANTIN_MAP) {
         nearest_map(from, to, count);
-    } else if (shape == QUATERNION) {
+    } else if (shape == PANTIN_UNIT) {
         for (i = 0; i < count; i++) dot += ((int64_t)from[i] * to[i]) >> 2;
         for (i = 0; i < count && dot < 0; i++) from[i] = difference(0, from[i]);
     }
@@ -187,7 +186,7 @@ static uint8_t kind_at(const pantin_joint_ref *joint, uint8_t channel) {
 }
 
 /* Which component each channel of a map or a quaternion holds. The angles of a joint that is coded as a map hold x, y, z in turn. */
-static void places_of(const pantin_joint_ref *joint, uint8_t count, uint8_t *places) {
+void pantin_animator_places(const pantin_joint_ref *joint, uint8_t count, uint8_t *places) {
     uint8_t c, at = 0;
     memset(places, 0, 15);
     for (c = 0; c < joint->channels; c++) {
@@ -219,20 +218,20 @@ static uint8_t order_of(const pantin_joint_ref *joint) {
 static int unit_of(uint8_t shape, const pantin_joint_ref *joint, const int32_t *own, uint8_t count, int32_t *q) {
     uint8_t places[15], axes[3], i;
     memset(q, 0, 4 * sizeof *q);
-    if (shape == EULER) {
+    if (shape == PANTIN_EULER) {
         if (count < 3) return 0;
         pantin_turn_axes(order_of(joint), axes);
         q[0] = ONE_Q30;
         for (i = 0; i < 3; i++) pantin_turn_about(q, axes[i], own[i]);
         return 1;
     }
-    if (shape == FREE) return 0;
-    places_of(joint, (uint8_t)(shape == MAP ? 3 : 4), places);
+    if (shape == PANTIN_FREE) return 0;
+    pantin_animator_places(joint, (uint8_t)(shape == PANTIN_MAP ? 3 : 4), places);
     for (i = 0; i < count; i++) {
-        uint8_t at = (uint8_t)(places[i] + (shape == MAP));
+        uint8_t at = (uint8_t)(places[i] + (shape == PANTIN_MAP));
         if (at < 4) q[at] = own[i];
     }
-    if (shape == MAP) {
+    if (shape == PANTIN_MAP) {
         pantin_turn_exponential(q);
     } else {
         pantin_turn_normalize(q);
@@ -241,7 +240,7 @@ static int unit_of(uint8_t shape, const pantin_joint_ref *joint, const int32_t *
 }
 
 /* The exponential map of a unit quaternion, of at most half a turn. */
-static void map_of(const int32_t *q, int32_t *map) {
+void pantin_animator_map(const int32_t *q, int32_t *map) {
     int32_t unit[4];
     int64_t angle, sine = length_of(q + 1, 3);
     uint8_t i;
@@ -258,19 +257,19 @@ static void map_of(const int32_t *q, int32_t *map) {
 static void write_turn(uint8_t shape, const pantin_joint_ref *joint, int32_t *q, int32_t *own, uint8_t count) {
     uint8_t places[15], i;
     int32_t parts[4] = {0, 0, 0, 0};
-    if (shape == EULER) {
+    if (shape == PANTIN_EULER) {
         pantin_turn_normalize(q);
         pantin_turn_angles(q, order_of(joint), parts);
         for (i = 0; i < count && i < 3; i++) own[i] = parts[i];
         return;
     }
-    if (shape == FREE) return;
-    if (shape == MAP) {
-        map_of(q, parts);
+    if (shape == PANTIN_FREE) return;
+    if (shape == PANTIN_MAP) {
+        pantin_animator_map(q, parts);
     } else {
         memcpy(parts, q, sizeof parts);
     }
-    places_of(joint, (uint8_t)(shape == MAP ? 3 : 4), places);
+    pantin_animator_places(joint, (uint8_t)(shape == PANTIN_MAP ? 3 : 4), places);
     for (i = 0; i < count; i++) own[i] = places[i] < 4 ? parts[places[i]] : 0;
 }
 
@@ -321,7 +320,7 @@ static uint8_t turn_count(const pantin_animator *a) { return a->turns.length > 4
 
 /* ---- Headings ---- */
 
-static void set_heading(pantin_heading *h, int32_t angle) {
+void pantin_animator_heading(pantin_heading *h, int32_t angle) {
     h->angle = angle;
     h->sine = 0;
     h->cosine = ONE_Q30;
@@ -334,7 +333,7 @@ static void products(const pantin_heading *h, int32_t a, int32_t b, int64_t *to)
     to[1] = (int64_t)a * h->sine + (int64_t)b * h->cosine;
 }
 
-static void rotate(const pantin_heading *h, int32_t a, int32_t b, int64_t *to) {
+void pantin_animator_rotate(const pantin_heading *h, int32_t a, int32_t b, int64_t *to) {
     uint8_t i;
     if (h->angle == 0) {
         to[0] = a;
@@ -352,9 +351,9 @@ static void rotate_wide(const pantin_heading *h, int64_t a, int64_t b, int64_t *
         to[0] = a;
         to[1] = b;
     } else if (a == (int32_t)a && b == (int32_t)b) {
-        rotate(h, (int32_t)a, (int32_t)b, to);
+        pantin_animator_rotate(h, (int32_t)a, (int32_t)b, to);
     } else {
-        rotate(h, (int32_t)(a & (ONE_Q30 - 1)), (int32_t)(b & (ONE_Q30 - 1)), to);
+        pantin_animator_rotate(h, (int32_t)(a & (ONE_Q30 - 1)), (int32_t)(b & (ONE_Q30 - 1)), to);
         products(h, (int32_t)(a >> 30), (int32_t)(b >> 30), high);
         to[0] = wide_sum(to[0], high[0]);
         to[1] = wide_sum(to[1], high[1]);
@@ -374,7 +373,7 @@ static uint16_t moving_count(const pantin_player *p) {
 }
 
 /* How far this instant is on the way from its frame to the next, in 2^-16. */
-static uint16_t part_of(const pantin_track *t) {
+uint16_t pantin_animator_part(const pantin_track *t) {
     if (t->rest == 0) return 0;
     return (uint16_t)(t->rest / (int64_t)t->clip.frame_time_ns);
 }
@@ -432,7 +431,7 @@ static pantin_result seek_track(pantin_track *t, uint32_t frame) {
 
 /* Adds a weight of what the channels move between the frame and this instant. */
 static void add_part(const pantin_track *t, uint16_t weight, int32_t *out) {
-    uint16_t i, part = (uint16_t)(((uint32_t)(part_of(t) >> 1) * weight) >> 15);
+    uint16_t i, part = (uint16_t)(((uint32_t)(pantin_animator_part(t) >> 1) * weight) >> 15);
     if (t->rest == 0) return;
     for (i = 0; i < moving_count(&t->player); i++) {
         const pantin_channel *c = &t->player.moving[i];
@@ -553,7 +552,7 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
     count = t->seam.yaw ? turn_count(a) : 0;
     if (t->seam.yaw) {
         turn_root(a, t->seam.yaw, turns, count);
-        nearest(a->turns.shape, turns, t->player.pose + a->turns.first, count);
+        pantin_animator_nearest(a->turns.shape, turns, t->player.pose + a->turns.first, count);
     }
     for (m = 0; m < moving_count(&t->player); m++) {
         pantin_channel *c = &t->player.moving[m];
@@ -739,8 +738,8 @@ static void new_travel(pantin_animator *a, const pantin_placement *from) {
         a->origin[i] = a->place[i];
         a->lap_place[i] = 0;
     }
-    set_heading(&a->heading, from->heading);
-    set_heading(&a->lap_heading, 0);
+    pantin_animator_heading(&a->heading, from->heading);
+    pantin_animator_heading(&a->lap_heading, 0);
     a->laps = 0;
 }
 
@@ -752,27 +751,29 @@ static void pass_laps(pantin_animator *a, int32_t laps) {
         int64_t way[2];
         uint8_t i;
         if (laps < 0) a->laps = difference(a->laps, 1);
-        if (seam->yaw) set_heading(&a->lap_heading, times(seam->yaw, a->laps));
+        if (seam->yaw) pantin_animator_heading(&a->lap_heading, times(seam->yaw, a->laps));
         rotate_wide(&a->lap_heading, seam->place[0], seam->place[1], way);
         for (i = 0; i < 2; i++) a->lap_place[i] = wide_sum(a->lap_place[i], laps < 0 ? -way[i] : way[i]);
         if (laps < 0) continue;
         a->laps = sum(a->laps, 1);
-        if (seam->yaw) set_heading(&a->lap_heading, times(seam->yaw, a->laps));
+        if (seam->yaw) pantin_animator_heading(&a->lap_heading, times(seam->yaw, a->laps));
     }
 }
 
-/* Finds where the figure is. */
-static void locate(pantin_animator *a) {
+void pantin_animator_locate(const pantin_animator *a, const int32_t *place, pantin_placement *to) {
     int64_t way[2], first[2] = {0, 0};
     uint8_t i;
     /* About the place where the loop begins, which is where a lap's turn happens. */
     for (i = 0; i < 2 && a->track.seam.known; i++) first[i] = a->track.seam.first[i];
-    rotate_wide(&a->lap_heading, a->place[0] - first[0], a->place[1] - first[1], way);
+    rotate_wide(&a->lap_heading, place[0] - first[0], place[1] - first[1], way);
     for (i = 0; i < 2; i++) way[i] = wide_sum(wide_sum(wide_sum(way[i], first[i]), a->lap_place[i]), (int64_t)(0u - (uint64_t)a->origin[i]));
     rotate_wide(&a->heading, way[0], way[1], way);
-    for (i = 0; i < 2; i++) a->placement.place[i] = wide_sum(a->anchor[i], way[i]);
-    a->placement.heading = sum(a->heading.angle, a->lap_heading.angle);
+    for (i = 0; i < 2; i++) to->place[i] = wide_sum(a->anchor[i], way[i]);
+    to->heading = sum(a->heading.angle, a->lap_heading.angle);
 }
+
+/* Finds where the figure is. */
+static void locate(pantin_animator *a) { pantin_animator_locate(a, a->place, &a->placement); }
 
 /* ---- Transitions ---- */
 
@@ -785,9 +786,8 @@ static int32_t fraction_of(int32_t x, uint32_t over, uint32_t under) {
 
 /* Sets accelerations and slopes so that differences and velocities come to zero in a number of frames. The cubic is solved again with 128, 32 and 2
    frames left, so that the end is exactly zero. */
-static void solve(pantin_animator *a, uint8_t frames, pantin_offset *o) {
+void pantin_animator_solve(uint8_t frames, pantin_offset *o) {
     uint32_t n = frames;
-    (void)a;
     if (frames == 0 || !(o->d | o->v)) {
         memset(o, 0, sizeof *o);
     } else if (frames == 1) {
@@ -806,7 +806,7 @@ static void solve(pantin_animator *a, uint8_t frames, pantin_offset *o) {
 
 static void solve_all(pantin_animator *a, uint8_t frames) {
     uint16_t c;
-    for (c = 0; c < a->channels; c++) solve(a, frames, &a->memory->offsets[c]);
+    for (c = 0; c < a->channels; c++) pantin_animator_solve(frames, &a->memory->offsets[c]);
 }
 
 static void solve_again(pantin_animator *a) {
@@ -848,7 +848,7 @@ static pantin_offset after(const pantin_offset *o, uint8_t frames) {
 }
 
 /* While differences are carried, they are what they were when that began: brings them to this frame. */
-static void leave_carried(pantin_animator *a) {
+void pantin_animator_leave_carried(pantin_animator *a) {
     uint16_t c;
     if (a->carried) a->stepped = 1;
     for (c = 0; c < a->channels && a->carried; c++) a->memory->offsets[c] = after(&a->memory->offsets[c], a->carried_frames);
@@ -859,7 +859,7 @@ static void leave_carried(pantin_animator *a) {
    once. */
 static void add_carried(pantin_animator *a) {
     const pantin_player *p = &a->track.player;
-    uint16_t c, m = 0, part = part_of(&a->track) >> 1;
+    uint16_t c, m = 0, part = pantin_animator_part(&a->track) >> 1;
     for (c = 0; c < a->channels; c++) {
         const pantin_offset *base = &a->memory->offsets[c];
         pantin_offset o = after(base, a->carried_frames);
@@ -906,7 +906,7 @@ static int may_carry(const pantin_animator *a, uint8_t frames) {
 static int run_carried(pantin_animator *a, int together, uint8_t frames, uint32_t rest_ns, passage *p, pantin_result *result) {
     uint8_t i;
     if (!together || !may_carry(a, frames) || !carry(a)) {
-        leave_carried(a);
+        pantin_animator_leave_carried(a);
         return 0;
     }
     p->from = frame_of(&a->track);
@@ -918,7 +918,7 @@ static int run_carried(pantin_animator *a, int together, uint8_t frames, uint32_
     a->rest_ns = rest_ns;
     a->track.rest = (int64_t)rest_ns << 16;
     if (frames > 0 && (a->left == 2 || a->left == 32 || a->left == 128)) {
-        leave_carried(a);
+        pantin_animator_leave_carried(a);
         solve_again(a);
     }
     p->to = frame_of(&a->track);
@@ -1164,7 +1164,7 @@ static pantin_result play(pantin_animator *a, uint64_t elapsed_ns, uint64_t *lef
 /* Lets time pass after the end of the clip: a transition still runs. */
 static void hold(pantin_animator *a, uint64_t elapsed_ns) {
     if (a->left == 0 || elapsed_ns == 0) return;
-    leave_carried(a);
+    pantin_animator_leave_carried(a);
     run_transition(a, elapsed_ns);
     compose(a);
     locate(a);
@@ -1202,7 +1202,7 @@ pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
     pantin_animator before;
     pantin_result result = begin_call(a, &before);
     if (result != PANTIN_OK) return result;
-    leave_carried(a);
+    pantin_animator_leave_carried(a);
     result = seek_track(&a->track, frame);
     if (result == PANTIN_OK) {
         compose(a);
@@ -1269,8 +1269,8 @@ static void turn_motion(pantin_animator *a, int32_t by) {
     keep(a, &a->turns, here, next);
     if (a->place_channels[0] == NO_CHANNEL || a->place_channels[1] == NO_CHANNEL) return;
     for (i = 0; i < 2; i++) o[i] = &a->memory->offsets[a->place_channels[i]];
-    set_heading(&heading, by);
-    rotate(&heading, difference(o[0]->v, o[0]->d), difference(o[1]->v, o[1]->d), velocity);
+    pantin_animator_heading(&heading, by);
+    pantin_animator_rotate(&heading, difference(o[0]->v, o[0]->d), difference(o[1]->v, o[1]->d), velocity);
     for (i = 0; i < 2; i++) o[i]->v = sum(o[i]->d, (int32_t)(uint32_t)(uint64_t)velocity[i]);
 }
 
@@ -1282,10 +1282,10 @@ static void take_difference(pantin_animator *a, uint8_t still) {
     for (c = 0; c < a->group_count; c++) {
         const pantin_group *group = &a->memory->groups[c];
         uint8_t own;
-        if (group->shape == FREE) continue;
+        if (group->shape == PANTIN_FREE) continue;
         own = kept(a, group, here, next);
-        nearest(group->shape, here, values + group->first, own);
-        nearest(group->shape, next, here, own);
+        pantin_animator_nearest(group->shape, here, values + group->first, own);
+        pantin_animator_nearest(group->shape, next, here, own);
         keep(a, group, here, next);
     }
     for (c = 0; c < a->channels; c++) {
@@ -1350,8 +1350,8 @@ static pantin_result convert(pantin_animator *a, const pantin_clip *old) {
         for (g = 0; rotates && g < a->group_count; g++) {
             const pantin_group *group = &a->memory->groups[g];
             int32_t here[4], next[4], q[4];
-            if (group->bit != joint.index || (group->shape != EULER && group->shape != MAP)) continue;
-            was = pantin_joint_is_exponential(old, &joint) ? MAP : EULER;
+            if (group->bit != joint.index || (group->shape != PANTIN_EULER && group->shape != PANTIN_MAP)) continue;
+            was = pantin_joint_is_exponential(old, &joint) ? PANTIN_MAP : PANTIN_EULER;
             if (was != group->shape) {
                 uint8_t count = kept(a, group, here, next);
                 result = pantin_refer(clip, &joint, &ref);
@@ -1374,7 +1374,7 @@ static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, uint32
     pantin_result result;
     if (old.rig.id != clip->rig.id) return PANTIN_ERROR_OTHER_RIG;
     if (kind == PANTIN_CUT) frames = 0;
-    leave_carried(a);
+    pantin_animator_leave_carried(a);
     yaw = yaw_of(a, a->pose);
     take_motion(a, clip);
     result = start_track(&a->track, clip, a->channels, frame, speed);
@@ -1467,7 +1467,7 @@ static int phase_of(const pantin_track *t, uint8_t *right, uint32_t *part) {
     from = last < 0 ? end - frames : last;
     to = next < 0 ? first + frames : next;
     *right = last < 0 ? end_right : last_right;
-    *part = to == from ? 0 : (uint32_t)clamp(((frame_of(t) - from) * 65536 + part_of(t)) / (to - from), 0, 0xffff);
+    *part = to == from ? 0 : (uint32_t)clamp(((frame_of(t) - from) * 65536 + pantin_animator_part(t)) / (to - from), 0, 0xffff);
     return 1;
 }
 
@@ -1503,11 +1503,10 @@ static int64_t in_step(const pantin_track *other, const pantin_clip *clip, uint3
 
 /* ---- The table of a state machine ---- */
 
-enum { MACHINE_SECTION = 4, FEET_SECTION = 5, TABLE_VERSION = 1 };
+enum { MACHINE_SECTION = 4, TABLE_VERSION = 1 };
 enum { VERSION_BYTE = 0, STATES, TRANSITIONS, PARAMETERS, INPUTS, FIRST_STATE, ANY, LAYERS };
 enum { HEADER_BYTES = 8, STATE_BYTES = 8, TRANSITION_BYTES = 8, PARAMETER_BYTES = 6, LAYER_BYTES = 12 };
 enum { ON_END = 0, ON_INPUT, ON_RELEASE, ON_EVENT, ON_ABOVE, ON_BELOW };
-#define NO_CLIP 255u
 #define IN_STEP 255u
 
 static uint8_t table_byte(const pantin_character *c, uint32_t at) { return pantin_byte(c->bank.source, c->table + at); }
@@ -1521,13 +1520,7 @@ static uint32_t transition_at(const pantin_character *c, uint32_t index) { retur
 static uint32_t parameter_at(const pantin_character *c, uint32_t index) { return transition_at(c, c->counts[TRANSITIONS]) + PARAMETER_BYTES * index; }
 static uint32_t layer_at(const pantin_character *c, uint32_t index) { return parameter_at(c, c->counts[PARAMETERS]) + LAYER_BYTES * index; }
 
-/* A row of the table's states: speed is in 2^-16. */
-typedef struct {
-    uint8_t clip, other, parameter, first, count;
-    int32_t speed;
-} state_row;
-
-static void read_state(const pantin_character *c, uint8_t state, state_row *row) {
+void pantin_animator_read_state(const pantin_character *c, uint8_t state, pantin_state_row *row) {
     uint32_t at = state_at(state);
     row->clip = table_byte(c, at);
     row->other = table_byte(c, at + 1);
@@ -1537,28 +1530,27 @@ static void read_state(const pantin_character *c, uint8_t state, state_row *row)
     row->count = table_byte(c, at + 7);
 }
 
+/* Finds the name of an index among all names. Returns 0 if it cannot be read. */
+static int name_at(const pantin_character *c, uint32_t index, pantin_name *name) {
+    uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
+    name->source = c->bank.source;
+    name->source->failed = PANTIN_OK;
+    for (; at < c->table_end; index--) {
+        name->length = pantin_byte(name->source, at);
+        name->start = at + 1;
+        if (index == 0) return name->source->failed == PANTIN_OK;
+        at += 1 + name->length;
+    }
+    return 0;
+}
+
 /* The index of a name among `count` that stand behind `before` others. */
 static uint8_t find_name(const pantin_character *c, uint32_t before, uint8_t count, const char *name) {
-    uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
     uint8_t index;
     pantin_name own;
-    if (!name || !count) return PANTIN_NO_INPUT;
-    own.source = c->bank.source;
-    own.source->failed = PANTIN_OK;
-    for (; at < c->table_end; at += 1 + own.length) {
-        own.length = pantin_byte(own.source, at);
-        own.start = at + 1;
-        if (before > 0) {
-            before--;
-            continue;
-        }
-        for (index = 0; index < count && at < c->table_end; index++) {
-            own.length = pantin_byte(own.source, at);
-            own.start = at + 1;
-            if (own.source->failed == PANTIN_OK && pantin_name_is(&own, name)) return index;
-            at += 1 + own.length;
-        }
-        break;
+    if (!name) return PANTIN_NO_INPUT;
+    for (index = 0; index < count && name_at(c, before + index, &own); index++) {
+        if (pantin_name_is(&own, name) && own.source->failed == PANTIN_OK) return index;
     }
     return PANTIN_NO_INPUT;
 }
@@ -1598,12 +1590,12 @@ static uint64_t led_to(const pantin_character *c, uint32_t first, uint32_t count
 static int check_reach(const pantin_character *c) {
     uint64_t reached = (uint64_t)1 << c->counts[FIRST_STATE] | led_to(c, 0, c->counts[ANY]), before = 0;
     uint8_t state;
-    state_row row;
+    pantin_state_row row;
     while (reached != before) {
         before = reached;
         for (state = 0; state < c->counts[STATES]; state++) {
             if (!(before >> state & 1)) continue;
-            read_state(c, state, &row);
+            pantin_animator_read_state(c, state, &row);
             reached |= led_to(c, row.first, row.count);
         }
     }
@@ -1615,13 +1607,13 @@ static int check_reach(const pantin_character *c) {
 
 static int check_states(const pantin_character *c) {
     uint8_t state;
-    state_row row;
+    pantin_state_row row;
     if (!check_transitions(c, 0, c->counts[ANY])) return 0;
     for (state = 0; state < c->counts[STATES]; state++) {
-        read_state(c, state, &row);
+        pantin_animator_read_state(c, state, &row);
         if (table_byte(c, state_at(state) + 3) || row.speed < -4 * PANTIN_SPEED || row.speed > 4 * PANTIN_SPEED) return 0;
         if (row.clip >= c->bank.clips || !check_transitions(c, row.first, row.count)) return 0;
-        if (row.other != NO_CLIP && (row.other >= c->bank.clips || row.parameter >= c->counts[PARAMETERS])) return 0;
+        if (row.other != PANTIN_NO_CLIP && (row.other >= c->bank.clips || row.parameter >= c->counts[PARAMETERS])) return 0;
     }
     return check_reach(c);
 }
@@ -1716,10 +1708,10 @@ static pantin_result find_carrier(pantin_character *c, const pantin_animator_mem
     uint8_t state, done = 0;
     for (state = 0; state < c->counts[STATES]; state++) {
         pantin_joint joint;
-        state_row row;
+        pantin_state_row row;
         pantin_result result;
         if (done && c->bank.rig.channels <= memory->moving_room && c->bank.rig.channels <= memory->channel_room) break;
-        read_state(c, state, &row);
+        pantin_animator_read_state(c, state, &row);
         result = open_clip(c, row.clip, &t->clip);
         if (result == PANTIN_OK) result = start_player(t, memory->moving, memory->moving_room, memory->values, memory->channel_room);
         if (result != PANTIN_OK) return result;
@@ -1741,32 +1733,33 @@ static pantin_result find_carrier(pantin_character *c, const pantin_animator_mem
 /* The frame at which a state's clip begins: one that plays backwards and is no loop begins at its last frame, instead of frame 0, where it would be over. */
 static uint32_t begun(uint32_t frame, const pantin_clip *clip, int32_t speed) { return frame == 0 && speed < 0 && !clip->looped ? clip->frames - 1 : frame; }
 
-/* Whether the bank has parts that are not played and were not declared absent. */
-static pantin_result check_parts(const pantin_character *c) {
+/* Finds out whether the bank has feet that were not declared absent. */
+static pantin_result look_for_feet(pantin_character *c) {
     uint32_t start, end;
-    pantin_result feet = pantin_find_section(&c->bank, FEET_SECTION, &start, &end);
-    if (feet != PANTIN_NOT_FOUND && !(c->without & PANTIN_WITHOUT_FEET)) return feet == PANTIN_OK ? PANTIN_UNSUPPORTED : feet;
-    return PANTIN_OK;
+    pantin_result feet = c->without & PANTIN_WITHOUT_FEET ? PANTIN_NOT_FOUND : pantin_find_section(&c->bank, PANTIN_FEET_SECTION, &start, &end);
+    c->needs_feet = feet == PANTIN_OK;
+    return feet == PANTIN_NOT_FOUND ? PANTIN_OK : feet;
 }
 
 static pantin_result open_character(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
     static const pantin_placement nowhere = {{0, 0}, 0};
     pantin_clip first;
     uint16_t carrier = 0;
-    state_row row;
+    pantin_state_row row;
     uint32_t frame;
     pantin_result result;
     memset(c, 0, sizeof *c);
     c->without = without;
+    c->waiting = PANTIN_NO_TRANSITION;
     result = pantin_open_bank(&c->bank, source);
     if (result == PANTIN_OK) result = pantin_find_section(&c->bank, MACHINE_SECTION, &c->table, &c->table_end);
     if (result != PANTIN_OK) return result;
     if (!check_table(c)) return source->error != PANTIN_OK ? source->error : PANTIN_ERROR_MACHINE;
-    result = check_parts(c);
+    result = look_for_feet(c);
     if (result == PANTIN_OK) result = find_carrier(c, memory, &carrier);
     if (result != PANTIN_OK) return result;
     c->state = c->counts[FIRST_STATE];
-    read_state(c, c->state, &row);
+    pantin_animator_read_state(c, c->state, &row);
     result = open_clip(c, row.clip, &first);
     if (result == PANTIN_OK) result = open_carried(&c->animator, &first, memory, carrier);
     if (result != PANTIN_OK) return result;
@@ -1790,13 +1783,13 @@ pantin_result pantin_character_open(pantin_character *c, pantin_source *source, 
 
 pantin_result pantin_character_second(pantin_character *c, pantin_track *track, pantin_channel *moving, size_t moving_room, int32_t *values,
                                       size_t value_room) {
-    state_row row;
+    pantin_state_row row;
     pantin_result result;
     if (!c->bank.source) return PANTIN_ERROR_HEAD;
     memset(track, 0, sizeof *track);
     track->speed = PANTIN_SPEED;
     c->bank.source->failed = PANTIN_OK;
-    read_state(c, c->state, &row);
+    pantin_animator_read_state(c, c->state, &row);
     result = open_clip(c, row.clip, &track->clip);
     if (result == PANTIN_OK) result = start_player(track, moving, moving_room, values, value_room);
     if (c->bank.source->failed != PANTIN_OK) result = c->bank.source->failed;
@@ -1805,6 +1798,10 @@ pantin_result pantin_character_second(pantin_character *c, pantin_track *track, 
 }
 
 uint8_t pantin_character_state(const pantin_character *c, const char *name) { return find_name(c, 0, c->counts[STATES], name); }
+
+int pantin_character_state_name(const pantin_character *c, uint8_t state, pantin_name *name) {
+    return state < c->counts[STATES] && name_at(c, state, name);
+}
 
 uint8_t pantin_character_parameter(const pantin_character *c, const char *name) { return find_name(c, c->counts[STATES], c->counts[PARAMETERS], name); }
 
@@ -1833,11 +1830,11 @@ void pantin_character_set(pantin_character *c, uint8_t parameter, int16_t value)
 
 /* Mixes the channels of a group: a weight of the way to another pose, the shortest one. */
 static void mix_group(uint8_t shape, int32_t *own, const int32_t *to, uint8_t count, uint16_t weight) {
-    uint8_t i, far = shape == QUATERNION;
-    if (shape != FREE && weight != 1u << 15) {
+    uint8_t i, far = shape == PANTIN_UNIT;
+    if (shape != PANTIN_FREE && weight != 1u << 15) {
         /* Farther than a quarter turn either way. */
         for (i = 0; i < count; i++) far |= (uint32_t)difference(to[i], own[i]) + 0x40000000u > 0x80000000u;
-        if (far) nearest(shape, own, to, count);
+        if (far) pantin_animator_nearest(shape, own, to, count);
     }
     for (i = 0; i < count; i++) own[i] = sum(own[i], weighted(difference(to[i], own[i]), weight));
 }
@@ -1860,7 +1857,7 @@ static pantin_result mix(pantin_animator *a, const pantin_track *other, uint16_t
 }
 
 /* How much of the second clip a parameter mixes in. */
-static uint16_t weight_of(const pantin_character *c, uint8_t parameter) {
+uint16_t pantin_animator_weight(const pantin_character *c, uint8_t parameter) {
     int32_t low = table_number(c, parameter_at(c, parameter)), high = table_number(c, parameter_at(c, parameter) + 2);
     /* So that bytes that cannot be read divide nothing by 0. */
     if (high <= low) return 0;
@@ -1868,7 +1865,7 @@ static uint16_t weight_of(const pantin_character *c, uint8_t parameter) {
 }
 
 /* Brings the second clip in step with the first by the footsteps of both, and lets the first play at a speed between the two. */
-static pantin_result keep_step(pantin_character *c, const state_row *row, uint16_t weight) {
+static pantin_result keep_step(pantin_character *c, const pantin_state_row *row, uint16_t weight) {
     pantin_track *own = &c->animator.track, *second = c->second;
     uint32_t stride = stride_of(&own->clip), other = stride_of(&second->clip);
     int64_t time, its, mixed, at;
@@ -1888,11 +1885,11 @@ static pantin_result keep_step(pantin_character *c, const state_row *row, uint16
 
 /* Mixes the second clip of a state that blends in. */
 static pantin_result blend(pantin_character *c) {
-    state_row row;
+    pantin_state_row row;
     pantin_result result;
     uint16_t weight;
-    read_state(c, c->state, &row);
-    if (row.other == NO_CLIP) return PANTIN_OK;
+    pantin_animator_read_state(c, c->state, &row);
+    if (row.other == PANTIN_NO_CLIP) return PANTIN_OK;
     if (!c->second) return c->without & PANTIN_WITHOUT_BLENDS ? PANTIN_OK : PANTIN_UNSUPPORTED;
     if (!c->blending) {
         pantin_clip clip;
@@ -1901,7 +1898,7 @@ static pantin_result blend(pantin_character *c) {
         if (result != PANTIN_OK) return result;
         c->blending = 1;
     }
-    weight = weight_of(c, row.parameter);
+    weight = pantin_animator_weight(c, row.parameter);
     result = keep_step(c, &row, weight);
     return result == PANTIN_OK ? mix(&c->animator, c->second, weight) : result;
 }
@@ -1935,47 +1932,61 @@ static int happens(const pantin_character *c, uint32_t at, const seen_inputs *in
     }
 }
 
-/* Makes a transition. */
-static pantin_result make(pantin_character *c, uint32_t at) {
+/* In place of a frame: the one that the transition's row names. */
+#define ROW_FRAME 0xffffffffu
+
+/* Makes a transition, to a frame of the new clip. */
+static pantin_result make(pantin_character *c, uint32_t transition, uint32_t frame) {
     pantin_animator *a = &c->animator;
+    uint32_t at = transition_at(c, transition);
     uint8_t to = table_byte(c, at + 4), first = table_byte(c, at + 7);
-    uint32_t frame = first;
     pantin_clip clip;
-    state_row row;
+    pantin_state_row row;
     pantin_result result;
-    read_state(c, to, &row);
+    pantin_animator_read_state(c, to, &row);
     result = open_clip(c, row.clip, &clip);
     if (result != PANTIN_OK) return result;
-    if (first == IN_STEP) {
+    if (frame == ROW_FRAME) {
         /* Without footsteps it begins at its first frame. */
-        int64_t instant = in_step(&a->track, &clip, 0);
+        int64_t instant = first == IN_STEP ? in_step(&a->track, &clip, 0) : (int64_t)first << 16;
         frame = instant < 0 ? 0 : (uint32_t)(instant >> 16);
     }
     result = go_over(a, &clip, begun(frame, &clip, row.speed), row.speed, (pantin_transition)table_byte(c, at + 5), table_byte(c, at + 6));
     if (result != PANTIN_OK) return result;
     c->state = to;
+    c->waiting = PANTIN_NO_TRANSITION;
     c->blending = 0;
     c->entered = 1;
     return PANTIN_OK;
 }
 
+/* More than the index of any transition. */
+#define NONE_HAPPENS 256u
+
 /* Takes the first transition whose cause holds. Once there is more than one state in `been`, a transition that leads to one of them is left out. `made`
  * is 1 if there was one. */
 static pantin_result enter(pantin_character *c, const seen_inputs *inputs, uint64_t been, uint8_t *made) {
-    uint64_t own = (uint64_t)1 << c->state;
-    uint32_t index, any = c->counts[ANY];
-    state_row row;
-    read_state(c, c->state, &row);
-    for (index = 0; index < any + row.count; index++) {
-        uint32_t at = transition_at(c, index < any ? index : row.first + (index - any));
+    uint64_t own = (uint64_t)1 << c->state, ns;
+    uint32_t index, any = c->counts[ANY], wanted = NONE_HAPPENS, frame;
+    uint8_t ended = c->waiting != PANTIN_NO_TRANSITION && c->animator.track.ended;
+    pantin_state_row row;
+    pantin_animator_read_state(c, c->state, &row);
+    for (index = 0; index < any + row.count && wanted == NONE_HAPPENS; index++) {
+        uint32_t transition = index < any ? index : row.first + (index - any), at = transition_at(c, transition);
         uint8_t to = table_byte(c, at + 4);
         if (index < any && to == c->state) continue;
         /* In its first state, a machine may start the same state again. */
-        if ((been != own && been >> to & 1) || !happens(c, at, inputs)) continue;
-        *made = 1;
-        return make(c, at);
+        if ((been == own || !(been >> to & 1)) && happens(c, at, inputs)) wanted = transition;
     }
-    return PANTIN_OK;
+    /* One that waits is made unless one before it happens, and at the end of its clip. */
+    if (wanted >= c->waiting) wanted = ended ? c->waiting : NONE_HAPPENS;
+    if (wanted == NONE_HAPPENS) return PANTIN_OK;
+    if (!ended && c->feet && c->feet_calls->next(c, (uint8_t)wanted, &frame, &ns)) {
+        c->waiting = (uint8_t)wanted;
+        return PANTIN_OK;
+    }
+    *made = 1;
+    return make(c, wanted, ROW_FRAME);
 }
 
 /* Makes a transition, then those of the states that are entered: all in one instant, so that the display rate does not matter. Inputs are `first` for the
@@ -2006,11 +2017,18 @@ static pantin_result run(pantin_character *c, uint64_t left_ns) {
     before.up = ~(c->held | c->held_before);
     before.heard = 0;
     for (i = 0; i < CHANGES; i++) {
+        uint64_t whole_ns, rest_ns;
+        uint32_t frame;
+        /* One that waits begins in the middle of the time. */
+        uint8_t waited = c->waiting != PANTIN_NO_TRANSITION && c->feet && c->feet_calls->next(c, c->waiting, &frame, &whole_ns) && whole_ns < left_ns;
+        if (!waited) whole_ns = left_ns;
         before.heard = a->event_count;
-        result = play(a, left_ns, &left_ns);
+        result = play(a, whole_ns, &rest_ns);
         if (result != PANTIN_OK) return result;
+        left_ns = left_ns - whole_ns + rest_ns;
         if (left_ns == 0) break;
-        result = enter_all(c, &before, &before, &made);
+        made = 1;
+        result = waited ? make(c, c->waiting, frame) : enter_all(c, &before, &before, &made);
         if (result != PANTIN_OK) return result;
         if (!made) break;
         result = blend(c);
@@ -2236,9 +2254,9 @@ static pantin_result start_second_again(pantin_character *c) {
     uint8_t ended = own->ended;
     uint32_t frame = frame_of(c->second);
     pantin_clip clip;
-    state_row row;
+    pantin_state_row row;
     pantin_result result;
-    read_state(c, c->state, &row);
+    pantin_animator_read_state(c, c->state, &row);
     result = open_clip(c, row.other, &clip);
     if (result == PANTIN_OK) result = start_track(c->second, &clip, c->animator.channels, frame, row.speed);
     if (result == PANTIN_OK) result = blend(c);
@@ -2261,6 +2279,7 @@ static pantin_result recover_all(pantin_character *c) {
         result = start_again(&l->track, NULL, c->animator.channels);
         if (result == PANTIN_OK) result = put_over(&c->animator, l);
     }
+    if (result == PANTIN_OK && c->feet) result = c->feet_calls->again(c);
     if (result != PANTIN_OK && !c->animator.track.stale) c->animator.track.stale = STALE;
     return result;
 }
@@ -2283,6 +2302,7 @@ pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) 
     uint8_t i;
     if (!c->bank.source) return PANTIN_ERROR_HEAD;
     if (c->layer_count < c->counts[LAYERS] && !(c->without & PANTIN_WITHOUT_LAYERS)) return PANTIN_UNSUPPORTED;
+    if (c->needs_feet && !c->feet) return PANTIN_UNSUPPORTED;
     c->bank.source->failed = PANTIN_OK;
     if (c->animator.track.stale) result = recover_all(c);
     if (result != PANTIN_OK) return result;
@@ -2298,6 +2318,7 @@ pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) 
     c->fired = 0;
     c->held_before = c->held;
     for (i = 0; result == PANTIN_OK && i < c->layer_count; i++) result = update_layer(c, c->layers[i], elapsed_us);
+    if (result == PANTIN_OK && c->feet) result = c->feet_calls->hold(c, elapsed_us);
     read = c->bank.source->failed;
     if (read == PANTIN_OK) return result;
     take_back_all(c, &before, layers, frame);

@@ -20,8 +20,8 @@
  *         }
  *     }
  *
- * Feet of a bank are not played: the functions below refuse them. With PANTIN_KEYS defined, key clips play too. A function that is called for an animator or a character of zeroes, also
- * after it could not be opened, returns PANTIN_ERROR_HEAD.
+ * Feet that stay where they are put are in pantin_feet.h. With PANTIN_KEYS defined, key clips play too. A function that is called for an animator or a
+ * character of zeroes, also after it could not be opened, returns PANTIN_ERROR_HEAD.
  */
 #ifndef PANTIN_ANIMATOR_H
 #define PANTIN_ANIMATOR_H
@@ -153,9 +153,9 @@ int pantin_animator_take(pantin_animator *animator, pantin_fired *fired);
 
 /* ---- State machines ----------------------------------------------------------------------------------------------------------------- */
 
-/* What a character does without although the bank has it. Layers for which no memory was lent never play; feet can slide and transitions do not wait for
- * them; states that blend play their first clip alone if no memory was lent for the second. A bank with such a part is PANTIN_UNSUPPORTED unless the
- * program says so. */
+/* What a character does without although the bank has it. Layers for which no memory was lent never play; feet that were not lent can slide, and
+ * transitions do not wait for them; states that blend play their first clip alone if no memory was lent for the second. An update of a bank with such a
+ * part is PANTIN_UNSUPPORTED unless the program says so. */
 enum { PANTIN_WITHOUT_LAYERS = 1, PANTIN_WITHOUT_FEET = 2, PANTIN_WITHOUT_BLENDS = 4 };
 
 /* An input or a parameter that a table lacks. */
@@ -172,6 +172,9 @@ typedef struct pantin_layer {
     uint8_t clip, input, doing;
 } pantin_layer;
 
+struct pantin_feet;
+struct pantin_feet_calls;
+
 /* A figure that a state machine moves. */
 typedef struct pantin_character {
     pantin_bank bank;
@@ -185,11 +188,15 @@ typedef struct pantin_character {
     uint8_t state;
     uint8_t entered;            /* 1 if the last update entered a state */
     uint8_t blending, without, layer_count;
+    uint8_t waiting;            /* a transition that waits for a matching foot, or 255 */
+    uint8_t needs_feet;         /* 1 if the bank has feet that were not declared absent */
+    struct pantin_feet *feet;   /* of pantin_feet.h; NULL before pantin_character_feet */
+    const struct pantin_feet_calls *feet_calls;
 } pantin_character;
 
-/* Starts the state machine of a bank that fills a source. `without` says which of the bank's parts may be left out. Returns PANTIN_UNSUPPORTED if it has
- * others, PANTIN_NOT_FOUND if it has no state machine, PANTIN_ERROR_MACHINE for a table that contradicts itself, or the errors of
- * pantin_animator_open. A bank with states that blend or layers also needs pantin_character_second or pantin_character_layer. */
+/* Starts the state machine of a bank that fills a source. `without` says which of the bank's parts may be left out. Returns PANTIN_NOT_FOUND if it has no
+ * state machine, PANTIN_ERROR_MACHINE for a table that contradicts itself, or the errors of pantin_animator_open. A bank with states that blend, layers or
+ * feet also needs pantin_character_second, pantin_character_layer or pantin_character_feet (of pantin_feet.h). */
 pantin_result pantin_character_open(pantin_character *character, pantin_source *source, const pantin_animator_memory *memory, uint8_t without);
 
 /* Lends what the second clips of blends need: call it right after pantin_character_open. `values` has an element for each channel. */
@@ -207,6 +214,9 @@ uint8_t pantin_character_input(const pantin_character *character, const char *na
 uint8_t pantin_character_parameter(const pantin_character *character, const char *name);
 uint8_t pantin_character_state(const pantin_character *character, const char *name);
 
+/* The name of a state, such as that of `character->state`. Returns 1, or 0 if there is none or it cannot be read. */
+int pantin_character_state_name(const pantin_character *character, uint8_t state, pantin_name *name);
+
 /* Fires an input, which the next update alone sees; holds it down or lets it go. What the table lacks does nothing. */
 void pantin_character_fire(pantin_character *character, uint8_t input);
 void pantin_character_hold(pantin_character *character, uint8_t input, int down);
@@ -216,8 +226,9 @@ void pantin_character_set(pantin_character *character, uint8_t parameter, int16_
 
 /* Lets time pass, then takes the transition whose condition holds. Events that were not taken are dropped first. On an error of a clip that cannot be
  * opened, or for which there is too little memory, the old state goes on. A read that fails takes the whole update back, as in pantin_animator_update: state,
- * inputs and events are those of before, and the update may be repeated. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers, and the
- * memory was neither lent nor declared absent. */
+ * inputs and events are those of before, and the update may be repeated; the pose of a character with feet that had just entered a state can differ from the one
+ * before in last bits. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers or feet, and
+ * the memory was neither lent nor declared absent. */
 pantin_result pantin_character_update(pantin_character *character, uint32_t elapsed_us);
 
 #ifdef __cplusplus

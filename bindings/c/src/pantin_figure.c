@@ -19,7 +19,6 @@ typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 /* Of a clip with more bytes of motion, the camera is chosen by the first of equal parts that are no larger. */
 #define SURVEYED_BYTES 16384u
 
-enum { TURN_X = 0, OFFSET = 3, EXPONENTIAL = 4, QUATERNION = 5 };
 enum { PLACEMENT = 1, END_SITE = 2, HEAD = 4, KEPT = 8, BEARS = 16, FORKS = 32, PARENT = 64 };
 
 const pantin_view pantin_default_view = {-50, 12, 0, PANTIN_RIG_UP};
@@ -183,6 +182,59 @@ int32_t pantin_figure_inverse_length(uint32_t square) {
     int32_t from = PANTIN_I32(pantin_inverse_root + index);
     return from + (((PANTIN_I32(pantin_inverse_root + index + 1) - from) * (int32_t)((above >> 8) & 0x7fff)) >> FRACTION);
 }
+
+#ifndef __AVR__
+/* For solid figures and feet, which an AVR has no room for. */
+int32_t pantin_figure_dot(const int32_t *a, const int32_t *b) { return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> FRACTION; }
+
+void pantin_figure_cross(const int32_t *a, const int32_t *b, int32_t *to) {
+    uint8_t i;
+    for (i = 0; i < 3; i++) {
+        uint8_t next = (uint8_t)((i + 1) % 3), last = (uint8_t)((i + 2) % 3);
+        to[i] = (a[next] * b[last] - a[last] * b[next] + HALF) >> FRACTION;
+    }
+}
+
+int pantin_figure_aim_along(int32_t *v, int32_t *length) {
+    uint8_t bits = bits_of_largest(v, 3), up = (uint8_t)(bits > 31 ? 0 : 31 - bits), down = 16, i;
+    uint32_t square = 0, part;
+    int32_t inverse, wide[3];
+    if (bits == 0) return 0;
+    for (i = 0; i < 3; i++) {
+        wide[i] = (int32_t)((uint32_t)v[i] << up);
+        v[i] = wide[i] >> down;
+        square += (uint32_t)(v[i] * v[i]);
+    }
+    if (square < 0x40000000u) {
+        down = 15;
+        square = 0;
+        for (i = 0; i < 3; i++) {
+            v[i] = wide[i] >> down;
+            part = (uint32_t)v[i] * (uint32_t)v[i];
+            square = square + part < square ? 0xffffffffu : square + part;
+        }
+    }
+    inverse = pantin_figure_inverse_length(square) >> 7;
+    for (i = 0; i < 3; i++) v[i] = (v[i] * inverse + HALF) >> FRACTION;
+    *length = ((int32_t)((square >> 16) + (square >> 15 & 1)) * inverse) >> 14;
+    if (down < up) {
+        *length >>= up - down;
+    } else {
+        *length = least(*length, (int32_t)0x40000000 >> (down - up)) * ((int32_t)1 << (down - up));
+    }
+    return 1;
+}
+
+int32_t pantin_figure_angle(int32_t y, int32_t x) {
+    int32_t across = (int32_t)size_of(y), along = (int32_t)size_of(x), small = least(across, along), large = most(across, along), angle;
+    uint8_t index = (uint8_t)(small >> 8 < 93 ? pantin_nearest[small >> 8] : 16);
+    angle = ((small * (PANTIN_I32(pantin_circle + 2 * index + 1) >> 7) - large * (PANTIN_I32(pantin_circle + 2 * index) >> 7) + HALF) >> FRACTION) * 20861;
+    angle += (int32_t)index << 25;
+    if (across > along) angle = (int32_t)0x40000000 - angle;
+    if (x < 0) angle = (int32_t)(0x80000000u - (uint32_t)angle);
+    return y < 0 ? difference(0, angle) : angle;
+}
+#endif
 
 /* Turns a rotation by a quaternion w, x, y, z of length 1 in Q15. */
 static void turn_unit(int32_t (*r)[3], const int32_t *q) {
@@ -516,7 +568,7 @@ static pantin_result push_drive(pantin_figure *f, const pantin_drive *drive, uin
 static pantin_result add_drives(pantin_figure *f, const pantin_joint *joint, uint8_t turns, uint8_t exponential, uint8_t *count) {
 #ifndef PANTIN_EULER_ONLY
     /* First kind, number of kinds and act of each group. */
-    static const uint8_t GROUPS[3][3] = {{PANTIN_EULER_X, 3, EXPONENTIAL}, {PANTIN_QUATERNION_W, 4, QUATERNION}, {PANTIN_EXPONENTIAL_X, 3, EXPONENTIAL}};
+    static const uint8_t GROUPS[3][3] = {{PANTIN_EULER_X, 3, PANTIN_DRIVE_MAP}, {PANTIN_QUATERNION_W, 4, PANTIN_DRIVE_UNIT}, {PANTIN_EXPONENTIAL_X, 3, PANTIN_DRIVE_MAP}};
 #endif
     uint8_t c, i, moved = 0, groups = 0;
     pantin_drive drive;
@@ -528,7 +580,7 @@ static pantin_result add_drives(pantin_figure *f, const pantin_joint *joint, uin
         if (kind < PANTIN_EULER_X) {
             if (moved) continue;
             moved = 1;
-            result = group(joint, OFFSET, PANTIN_POSITION_X, 3, 0, &drive);
+            result = group(joint, PANTIN_DRIVE_PLACE, PANTIN_POSITION_X, 3, 0, &drive);
         } else if (kind < PANTIN_QUATERNION_W && !exponential && turns) {
             drive.first = (uint16_t)(joint->first_channel + c);
             drive.what = (uint16_t)(kind - PANTIN_EULER_X);
@@ -727,7 +779,7 @@ static void own_offset(const pantin_figure *f, uint8_t index, const pantin_drive
     for (i = 0; i < 3; i++) offset[i] = index < 2 && index <= f->hips && bone->kind == PANTIN_HIDDEN ? f->places[index][i] : bone->offset[i];
     for (d = 0; d < bone->drives; d++) {
         uint16_t what = drives[d].what;
-        if ((what & 7) != OFFSET) continue;
+        if ((what & 7) != PANTIN_DRIVE_PLACE) continue;
         for (i = 0; i < 3; i++) {
             uint8_t behind = what >> (3 + 3 * i) & 7;
             if (behind != ABSENT) offset[i] = shift_right(pose[drives[d].first + behind], f->position_shift);
@@ -740,17 +792,17 @@ void pantin_figure_rotate(int32_t (*r)[3], const pantin_bone *bone, const pantin
     for (d = 0; d < bone->drives; d++) {
         const int32_t *from = pose + drives[d].first;
         uint8_t act = drives[d].what & 7;
-        if (act < OFFSET) {
+        if (act < PANTIN_DRIVE_PLACE) {
             turn(r, act, *from);
 #ifndef PANTIN_EULER_ONLY
-        } else if (act != OFFSET) {
+        } else if (act != PANTIN_DRIVE_PLACE) {
             int32_t members[4];
             uint8_t i;
             for (i = 0; i < 4; i++) {
                 uint8_t behind = drives[d].what >> (3 + 3 * i) & 7;
-                members[i] = behind == ABSENT || (act == EXPONENTIAL && i == 3) ? 0 : from[behind];
+                members[i] = behind == ABSENT || (act == PANTIN_DRIVE_MAP && i == 3) ? 0 : from[behind];
             }
-            if (act == EXPONENTIAL) {
+            if (act == PANTIN_DRIVE_MAP) {
                 turn_exponential(r, members);
             } else {
                 turn_quaternion(r, members);
@@ -985,7 +1037,7 @@ pantin_result pantin_figure_aim(pantin_figure *f, pantin_player *player, const p
 pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, const pantin_view *view, pantin_figure_cover cover,
                                     const void *context) {
     uint32_t now = player->frame, frame = 0;
-    pantin_result result = PANTIN_OK;
+    pantin_result result = player->started ? PANTIN_OK : pantin_restart(player);
     int32_t up[3], facing[3], scale;
     uint8_t i, finer;
     bounds b;
@@ -1020,7 +1072,12 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
     set_camera(f, &b, up, facing, view, scale);
     f->centre[0] = ((int32_t)f->width << 4) / 2;
     f->centre[1] = ((int32_t)f->height << 4) / 2 - (e.top + e.bottom) / 2 * scale / TRIAL_SCALE;
-    return result != PANTIN_OK ? result : pantin_seek(player, now);
+    if (result == PANTIN_OK) result = pantin_seek(player, now);
+    if (result == PANTIN_OK) return PANTIN_OK;
+    /* It is still the frame to which the next call goes back. */
+    player->frame = now;
+    player->started = 0;
+    return result;
 }
 
 void pantin_figure_shift(pantin_figure *f, int16_t x, int16_t y) {

@@ -109,7 +109,7 @@ typedef struct pantin_figure {
     int32_t size;             /* rough height of the figure in figure units */
     int32_t head_radius;
     int32_t places[2][3];     /* positions of the joints that only place the figure */
-    int32_t target[3];        /* where the camera looks in this pose */
+    int32_t target[3];        /* where the camera looks in this pose; the fields from here on are of the camera and the ground */
     int32_t view[3][3];       /* the camera's rotation times its factor, as columns */
     int32_t fixed[3];         /* coordinates of the target along axes that the camera does not follow */
     uint8_t fixed_axes;       /* bit i: axis i is fixed */

@@ -1,4 +1,4 @@
-/* What the solid figure uses of figures: not for programs. See pantin_figure.h and pantin_solid.h. */
+/* What solid figures and feet use of figures: not for programs. See pantin_figure.h, pantin_solid.h and pantin_feet.h. */
 #ifndef PANTIN_FIGURE_PARTS_H
 #define PANTIN_FIGURE_PARTS_H
 
@@ -7,6 +7,11 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* What a drive does, in the low 3 bits of its `what`: it turns about x, y or z, places the joint, or turns it by a map or a quaternion. The members of a
+ * group follow, 3 bits each: PANTIN_DRIVE_WHOLE_MAP and PANTIN_DRIVE_WHOLE_UNIT are groups without gaps. */
+enum { PANTIN_DRIVE_TURN = 0, PANTIN_DRIVE_PLACE = 3, PANTIN_DRIVE_MAP = 4, PANTIN_DRIVE_UNIT = 5 };
+enum { PANTIN_DRIVE_WHOLE_MAP = PANTIN_DRIVE_MAP | 1 << 6 | 2 << 9, PANTIN_DRIVE_WHOLE_UNIT = PANTIN_DRIVE_UNIT | 1 << 6 | 2 << 9 | 3 << 12 };
 
 /* What a clip covers of the display, in sixteenths of a pixel from the target. */
 typedef struct pantin_extent {
@@ -69,6 +74,15 @@ int32_t pantin_figure_project(const pantin_figure *figure, const int32_t *place,
 
 /* Makes a vector its direction in Q15. Returns 0 for a vector of no length. */
 int pantin_figure_direction(int32_t *v);
+
+/* pantin_figure_direction more exactly: the functions of the module `vector` of the crate pantin-math, for vectors of length 1 at most in Q15. A length past
+ * 2^30 is cut off. */
+int pantin_figure_aim_along(int32_t *v, int32_t *length);
+int32_t pantin_figure_dot(const int32_t *a, const int32_t *b);
+void pantin_figure_cross(const int32_t *a, const int32_t *b, int32_t *to);
+
+/* The angle of a unit vector in Q15 from the x axis, in 2^-32 turns. */
+int32_t pantin_figure_angle(int32_t y, int32_t x);
 
 /* The inverse of a length in Q22 by its square, 2^30 (a length of 1) to 2^32 - 1. */
 int32_t pantin_figure_inverse_length(uint32_t square);

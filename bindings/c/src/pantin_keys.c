@@ -32,10 +32,20 @@ static int64_t plus(int64_t a, int64_t b) { return (int64_t)((uint64_t)a + (uint
 static int64_t less(int64_t a, int64_t b) { return (int64_t)((uint64_t)a - (uint64_t)b); }
 static int64_t times(int64_t a, int64_t b) { return (int64_t)((uint64_t)a * (uint64_t)b); }
 
-/* The nearest quotient; halves away from zero. */
+/* The nearest quotient; halves away from zero. Small divisors, as lengths of spans are, take digits of 16 bits, which are divisions of 32. */
 static int64_t divide(int64_t value, uint32_t by) {
-    uint64_t size = value < 0 ? 0u - (uint64_t)value : (uint64_t)value;
-    size = (size + (by >> 1)) / by;
+    uint64_t size = (value < 0 ? 0u - (uint64_t)value : (uint64_t)value) + (by >> 1);
+    if (by >> 16) {
+        size /= by;
+    } else {
+        uint32_t high = (uint32_t)(size >> 32), low = (uint32_t)size, rest, digit;
+        uint64_t quotient = 0;
+        if (high) { quotient = (uint64_t)(high / by) << 32; high %= by; }
+        rest = high << 16 | low >> 16;
+        digit = rest / by;
+        rest = (rest - digit * by) << 16 | (low & 0xffff);
+        size = quotient | digit << 16 | rest / by;
+    }
     return (int64_t)(value < 0 ? 0u - size : size);
 }
 
@@ -453,28 +463,50 @@ static int32_t reach_of(const solver *s, uint32_t span, uint32_t *hold) {
 
 static int64_t bend(int64_t before, int64_t after) { return (after - before) * 1536; }
 
+/* Where the last chord ended, and the last span's length and reach: grids of equal spans need one division for it. */
+typedef struct {
+    int64_t ended;
+    uint32_t length;
+    int32_t reach;
+} chain;
+
+/* The chord that follows, of a channel. */
+static int64_t next_chord(const solver *s, const keys_of *keys, uint32_t key, chain *c) {
+    const pantin_player *p = s->r->p;
+    uint32_t length = length_of(p, &s->grid, key);
+    int64_t from = c->ended;
+    if (length != c->length) c->reach = reach_of(s, key, NULL);
+    c->length = length;
+    if (!keys) return 0;
+    c->ended = raw_value(keys->scale, value_of(p, keys, key + 1));
+    return divide((c->ended - from) * 256, length);
+}
+
 /* Eliminates, and substitutes back: for a channel's second differences, or without keys for the dependences on the first key. Returns what the
  * neighbours of a loop's first key pull it by, less its bend. */
 static int64_t sweep(solver *s, const keys_of *keys) {
     const pantin_player *p = s->r->p;
     uint32_t at = keys ? keys->at + 1 : s->at[2], stride = keys ? 2 : 1, last = s->grid.last, key;
-    int32_t end = keys ? 0 : (int32_t)1 << 30, value = end, reach = reach_of(s, 0, NULL), first_reach = reach;
-    int64_t first = keys ? chord(p, keys, 0) : 0, before = first, sum;
+    int32_t end = keys ? 0 : (int32_t)1 << 30, value = end, first_reach;
+    int64_t first, before, sum;
+    chain c = {0, 0, 0};
+    if (keys) c.ended = raw_value(keys->scale, value_of(p, keys, 0));
+    before = first = next_chord(s, keys, 0, &c);
+    first_reach = c.reach;
     set(p, at, (uint32_t)end);
     set(p, at + last * stride, (uint32_t)end);
     for (key = 1; key < last; key++) {
-        int64_t after = keys ? chord(p, keys, key) : 0;
-        value = number(s, divide(less(bend(before, after), (int64_t)reach * value), get(p, s->at[0] + key)));
+        int64_t pull = (int64_t)c.reach * value, after = next_chord(s, keys, key, &c);
+        value = number(s, divide(less(bend(before, after), pull), get(p, s->at[0] + key)));
         set(p, at + key * stride, (uint32_t)value);
         before = after;
-        reach = reach_of(s, key, NULL);
     }
     value = end;
     for (key = last; --key > 0;) {
         value = number(s, (int32_t)get(p, at + key * stride) - scaled((int32_t)get(p, s->at[1] + key), value));
         set(p, at + key * stride, (uint32_t)value);
     }
-    sum = plus((int64_t)first_reach * value, (int64_t)reach * (int32_t)get(p, at + (last - 1) * stride));
+    sum = plus((int64_t)first_reach * value, (int64_t)c.reach * (int32_t)get(p, at + (last - 1) * stride));
     return less(sum, bend(before, first));
 }
 

@@ -56,42 +56,9 @@ static uint8_t zeros_before(uint32_t x) {
     return zeros;
 }
 
-static int32_t dot(const int32_t *a, const int32_t *b) { return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 16384) >> 15; }
-
-static void cross(const int32_t *a, const int32_t *b, int32_t *to) {
-    uint8_t i;
-    for (i = 0; i < 3; i++) {
-        uint8_t next = (uint8_t)((i + 1) % 3), last = (uint8_t)((i + 2) % 3);
-        to[i] = (a[next] * b[last] - a[last] * b[next] + 16384) >> 15;
-    }
-}
-
-/* Makes a vector its direction in Q15, more exactly than pantin_figure_direction. Returns 0 for a vector of no length. */
 static int aim_along(int32_t *v) {
-    uint32_t largest = 0, square = 0, part;
-    uint8_t i, up, down = 16;
-    int32_t inverse, wide[3];
-    for (i = 0; i < 3; i++) largest |= v[i] < 0 ? 0u - (uint32_t)v[i] : (uint32_t)v[i];
-    if (!largest) return 0;
-    up = zeros_before(largest);
-    if (up) up--;
-    for (i = 0; i < 3; i++) {
-        wide[i] = (int32_t)((uint32_t)v[i] << up);
-        v[i] = wide[i] >> down;
-        square += (uint32_t)(v[i] * v[i]);
-    }
-    if (square < 0x40000000u) {
-        down = 15;
-        square = 0;
-        for (i = 0; i < 3; i++) {
-            v[i] = wide[i] >> down;
-            part = (uint32_t)v[i] * (uint32_t)v[i];
-            square = square + part < square ? 0xffffffffu : square + part;
-        }
-    }
-    inverse = pantin_figure_inverse_length(square) >> 7;
-    for (i = 0; i < 3; i++) v[i] = (v[i] * inverse + 16384) >> 15;
-    return 1;
+    int32_t length;
+    return pantin_figure_aim_along(v, &length);
 }
 
 /* ---- The character ---- */
@@ -388,11 +355,11 @@ static pantin_result learn_head(pantin_solid *s, pantin_player *player) {
         turned(&s->figure, player->pose, p->head, view);
         way(s, p->arms[1][0], p->arms[0][0], a);
         way(s, p->hips, p->neck, b);
-        cross(a, b, facing);
+        pantin_figure_cross(a, b, facing);
         way(s, p->neck, p->head, b);
         for (i = 0; i < 3; i++) {
-            ahead[i] += dot(view[i], facing) >> 2;
-            up[i] += dot(view[i], b) >> 2;
+            ahead[i] += pantin_figure_dot(view[i], facing) >> 2;
+            up[i] += pantin_figure_dot(view[i], b) >> 2;
         }
     }
     if (!aim_along(ahead)) {
@@ -400,10 +367,10 @@ static pantin_result learn_head(pantin_solid *s, pantin_player *player) {
         ahead[2] = 32768;
     }
     up_of(up);
-    a[0] = dot(up, ahead);
+    a[0] = pantin_figure_dot(up, ahead);
     for (i = 0; i < 3; i++) up[i] -= (ahead[i] * a[0]) >> 15;
     up_of(up);
-    cross(up, ahead, left);
+    pantin_figure_cross(up, ahead, left);
     for (i = 0; i < 3; i++) {
         s->head_axes[0][i] = (int16_t)clamp(up[i] >> 2, -AXIS, AXIS);
         s->head_axes[1][i] = (int16_t)clamp(ahead[i] >> 2, -AXIS, AXIS);
@@ -438,27 +405,36 @@ pantin_result pantin_solid_look(pantin_solid *s, const uint8_t *look, size_t len
     return PANTIN_OK;
 }
 
-pantin_result pantin_solid_set_up(pantin_solid *s, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
+static pantin_result set_up_parts(pantin_solid *s, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
                                   size_t scratch_room) {
     pantin_result result = pantin_figure_set_up(&s->figure, player, width, height, scratch, scratch_room);
-    s->build = PANTIN_LINES;
-    s->part_count = s->sorted = 0;
-    if (result != PANTIN_OK) {
-        s->figure.width = s->figure.bone_count = s->figure.line_count = 0;
-        return result;
-    }
-    memset(&s->person, NONE, sizeof s->person);
-    s->person.hips = (uint8_t)s->figure.hips;
-    s->build = PANTIN_CAPSULES;
+    if (result != PANTIN_OK) return result;
+    s->build = PANTIN_PERSON;
     if (find_person(&s->person, &s->figure, &player->clip->rig)) {
-        s->build = PANTIN_PERSON;
         result = learn_head(s, player);
     } else {
+        s->build = PANTIN_CAPSULES;
         memset(&s->person, NONE, sizeof s->person);
         s->person.hips = (uint8_t)s->figure.hips;
     }
     list(s);
-    return player->clip->rig.source->error != PANTIN_OK ? player->clip->rig.source->error : result;
+    return result;
+}
+
+pantin_result pantin_solid_set_up(pantin_solid *s, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
+                                  size_t scratch_room) {
+    /* Functions that return no result hide that bytes could not be read. The sources know. */
+    pantin_source *source = player->clip->source, *rig = player->clip->rig.source;
+    pantin_result result;
+    source->failed = rig->failed = PANTIN_OK;
+    result = set_up_parts(s, player, width, height, scratch, scratch_room);
+    if (source->failed != PANTIN_OK) result = source->failed;
+    if (rig->failed != PANTIN_OK) result = rig->failed;
+    if (result == PANTIN_OK) return PANTIN_OK;
+    s->build = PANTIN_LINES;
+    s->part_count = 0;
+    s->figure.width = s->figure.bone_count = s->figure.line_count = 0;
+    return result;
 }
 
 /* The length of the bones from a joint down to another one. */
@@ -740,7 +716,7 @@ static void find_anchor(const pantin_solid *s, uint8_t kind, int32_t left, ancho
     }
     /* Below 2^15, so that products stay within 32 bits. */
     a->length = clamp((least(s->pixels, 1 << 14) * pantin_figure_magnification(a->origin[2])) >> 14, 1, 32767);
-    cross(a->axes[0], a->axes[1], a->axes[2]);
+    pantin_figure_cross(a->axes[0], a->axes[1], a->axes[2]);
     for (i = 0; i < 3; i++) {
         for (j = 0; j < 3; j++) a->axes[i][j] = (a->axes[i][j] * a->length) >> 15;
     }
@@ -807,19 +783,29 @@ static int32_t bone_depth(const pantin_figure *f, uint8_t index) {
     return ((int32_t)f->bones[bone->parent].depth + bone->depth) >> 1;
 }
 
+/* How far away the parts of a figure count as, in their order. */
+static void keys_of(const pantin_solid *s, int32_t *to) {
+    int32_t keys[PANTIN_SOLID_PARTS];
+    uint8_t i, person = s->build == PANTIN_PERSON;
+    if (person) person_keys(s, keys);
+    for (i = 0; i < s->part_count; i++) to[i] = person ? keys[s->order[i]] : bone_depth(&s->figure, s->order[i]);
+}
+
 /* Puts the farthest part first. The first picture is sorted exactly, later ones from the order of the one before. */
 static void sort(pantin_solid *s) {
     int32_t keys[PANTIN_SOLID_PARTS], passing = s->sorted ? s->depth * PASSING / 1000 : 0;
-    uint8_t i, place, by_bone = s->build != PANTIN_PERSON;
-    if (!by_bone) person_keys(s, keys);
-#define KEY(part) (by_bone ? bone_depth(&s->figure, part) : keys[part])
+    uint8_t i, place;
+    keys_of(s, keys);
     for (i = 1; i < s->part_count; i++) {
         uint8_t moving = s->order[i];
-        int32_t own = KEY(moving);
-        for (place = i; place > 0 && KEY(s->order[place - 1]) + passing < own; place--) s->order[place] = s->order[place - 1];
+        int32_t own = keys[i];
+        for (place = i; place > 0 && keys[place - 1] + passing < own; place--) {
+            s->order[place] = s->order[place - 1];
+            keys[place] = keys[place - 1];
+        }
         s->order[place] = moving;
+        keys[place] = own;
     }
-#undef KEY
     s->sorted = 1;
 }
 
@@ -1715,8 +1701,8 @@ static void draw_shadow(const pantin_solid *s, const canvas *c, const level *l, 
     }
 }
 
-/* Draws a disc, the floor's lines or dots, and the shadow of a person. */
-static void draw_floor(const pantin_solid *s, const canvas *c) {
+/* Draws a disc and the floor's lines or dots, if the whole floor is wanted, and the shadow of a person. */
+static void draw_floor(const pantin_solid *s, const canvas *c, int whole) {
     const pantin_figure *f = &s->figure;
     ink lines = tinted(c, tint_of(s, FLOOR), FULL);
     int32_t place[3];
@@ -1726,13 +1712,13 @@ static void draw_floor(const pantin_solid *s, const canvas *c) {
     level l;
     bare(&o);
     find_level(f, &l);
-    if (c->format > PANTIN_L8) {
+    if (whole && c->format > PANTIN_L8) {
         below(s, &l, s->person.hips, place);
         floor_disc(s, place, 620, stage[0]);
         plain(&filled, tinted(c, tint_of(s, STAGE), FULL));
         draw_hull(c, stage, 1, 1, 0, &o, &filled);
     }
-    draw_ground(f, c, &lines);
+    if (whole) draw_ground(f, c, &lines);
     if (s->build != PANTIN_PERSON) return;
     plain(&filled, tinted(c, tint_of(s, SHADOW), FULL));
     if (c->format < PANTIN_L8) {
@@ -1778,8 +1764,62 @@ pantin_result pantin_solid_draw(const pantin_solid *s, pantin_format format, voi
         draw_lines(&s->figure, &c, floor);
         return PANTIN_OK;
     }
-    if (floor) draw_floor(s, &c);
+    if (floor) draw_floor(s, &c, 1);
     for (i = 0; i < s->part_count; i++) draw_part(s, &c, s->order[i], &drawn);
+    return PANTIN_OK;
+}
+
+void pantin_solid_share_camera(pantin_solid *s, const pantin_solid *other) {
+    pantin_figure *own = &s->figure;
+    const pantin_figure *from = &other->figure;
+    /* All fields from the target on are of the camera and the ground. */
+    size_t at = offsetof(pantin_figure, target);
+    if (!own->width || !from->width) return;
+    own->width = from->width;
+    own->height = from->height;
+    memcpy((uint8_t *)own + at, (const uint8_t *)from + at, sizeof *own - at);
+    measure(s);
+}
+
+pantin_result pantin_solid_draw_together(const pantin_solid *const *figures, size_t count, pantin_format format, void *rows, size_t stride, uint16_t y0,
+                                         uint16_t y1, int floor) {
+    int32_t keys[PANTIN_SOLID_TOGETHER][PANTIN_SOLID_PARTS], best = 0, key;
+    uint64_t drawn[PANTIN_SOLID_TOGETHER];
+    uint8_t next[PANTIN_SOLID_TOGETHER], i, farthest;
+    canvas c;
+    pantin_result result;
+    if (count > PANTIN_SOLID_TOGETHER) return PANTIN_NO_ROOM;
+    for (i = 0; i < count; i++) {
+        if (figures[i]->figure.width != figures[0]->figure.width || figures[i]->figure.height != figures[0]->figure.height) return PANTIN_NOT_FOUND;
+    }
+    if (count == 0) return PANTIN_ERROR_HEAD;
+    result = begin(&c, &figures[0]->figure, format, rows, stride, y0, y1);
+    if (result != PANTIN_OK) return result;
+    for (i = 0; i < count; i++) {
+        /* Figures of lines are drawn whole, and have no parts to come. */
+        next[i] = figures[i]->build == PANTIN_LINES ? PANTIN_SOLID_PARTS : 0;
+        drawn[i] = 0;
+        if (next[i]) {
+            draw_lines(&figures[i]->figure, &c, floor && i == 0);
+        } else {
+            keys_of(figures[i], keys[i]);
+        }
+    }
+    for (i = 0; i < count && floor; i++) {
+        if (!next[i]) draw_floor(figures[i], &c, i == 0);
+    }
+    do {
+        farthest = NONE;
+        for (i = 0; i < count; i++) {
+            if (next[i] >= figures[i]->part_count) continue;
+            key = clamp(keys[i][next[i]], -32768L, 32767L);
+            /* Of equally far parts that of the first figure comes first. */
+            if (farthest != NONE && key <= best) continue;
+            farthest = i;
+            best = key;
+        }
+        if (farthest != NONE) draw_part(figures[farthest], &c, figures[farthest]->order[next[farthest]++], &drawn[farthest]);
+    } while (farthest != NONE);
     return PANTIN_OK;
 }
 

@@ -81,12 +81,12 @@ pantin_result pantin_solid_look(pantin_solid *solid, const uint8_t *look, size_t
 
 /* Sets the figure up for a player's clip: pantin_figure_set_up on solid->figure, to which memory was lent, then finds a person's joints. It plays
  * about 48 frames of the clip. Leaves the player at frame 0. Returns PANTIN_NOT_FOUND for a width or height of 0 or above 2047, and what
- * pantin_figure_set_up does. */
+ * pantin_figure_set_up does; after a read that failed (PANTIN_ERROR_READ) it may be called again. */
 pantin_result pantin_solid_set_up(pantin_solid *solid, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
                                   size_t scratch_room);
 
 /* Chooses the camera: see pantin_figure_aim. It makes room for head, hands and attachments unless solid->tight was set to 1. PANTIN_ERROR_HEAD for a
- * figure of zeroes, which was not set up. */
+ * figure of zeroes, which was not set up. After a read that failed (PANTIN_ERROR_READ), call it again before the figure is drawn. */
 pantin_result pantin_solid_aim(pantin_solid *solid, pantin_player *player, const pantin_view *view);
 
 /* Places the figure in a pose of the clip's rig and sorts its parts. Parts change places only if their depths differ clearly, so the order can depend
@@ -102,6 +102,20 @@ void pantin_figure_pose_at(pantin_figure *figure, const int32_t *pose, const pan
  * stands on a floor and has a shadow. Returns PANTIN_NOT_FOUND if y1 is beyond the display or the format is unknown, PANTIN_NO_ROOM if `stride` is
  * too small for a row, PANTIN_ERROR_HEAD for a figure that was not set up. */
 pantin_result pantin_solid_draw(const pantin_solid *solid, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int floor);
+
+/* The most figures of one picture. */
+#define PANTIN_SOLID_TOGETHER 8
+
+/* Takes over camera and ground of another figure of the same rig, so that both stand in one world; take a pose after it. Nothing happens if one of them was
+ * not set up. */
+void pantin_solid_share_camera(pantin_solid *solid, const pantin_solid *other);
+
+/* Draws figures in the poses that they took last, as pantin_solid_draw does one: the floor of the first, the shadows of all, and then the parts of all
+ * figures from far to near, so that they can reach around each other. Figures of lines are drawn before the others. The pixels are those of the crate's
+ * draw_together. Returns PANTIN_NO_ROOM for more than PANTIN_SOLID_TOGETHER figures, PANTIN_ERROR_HEAD if there is none, PANTIN_NOT_FOUND if they were set up
+ * for displays of different sizes, or some were not set up, and what pantin_solid_draw does. It takes 1.7 KB of stack more. */
+pantin_result pantin_solid_draw_together(const pantin_solid *const *figures, size_t count, pantin_format format, void *rows, size_t stride, uint16_t y0,
+                                         uint16_t y1, int floor);
 
 /* Draws a figure of lines, in the pose of pantin_figure_pose or pantin_figure_pose_at: the pixels of the crate's FigureRenderer. With `ground` 1 it has a ground. */
 pantin_result pantin_figure_draw(const pantin_figure *figure, pantin_format format, void *rows, size_t stride, uint16_t y0, uint16_t y1, int ground);

@@ -1,14 +1,15 @@
 /* Prints what the animator makes of scripts, for comparison with the crate pantin-animator (xtask/commands/src/bindings/animator):
  *
  *     animator play SCRIPT CLIP...      : an animator that begins with the first clip
- *     animator steer SCRIPT BANKS SECOND : the state machines of banks, each behind its length as a u32; with SECOND 1 states blend and layers play
+ *     animator steer SCRIPT BANKS LENT  : the state machines of banks, each behind its length as a u32; LENT is the sum of 1, with which states blend and
+ *                                         layers play, and 2, with which feet are held
  *     animator parts BANKS              : whether a bank opens if 0 to 7 of its parts may be left out */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "file.h"
-#include "pantin_animator.h"
+#include "pantin_feet.h"
 
 enum { CHANNELS = 512, STATES = 4096, CLIPS = 64 };
 
@@ -23,6 +24,7 @@ static pantin_animator animator;
 static pantin_character character;
 static pantin_track second;
 static pantin_layer layers[4];
+static pantin_feet feet;
 static pantin_channel layer_moving[4][STATES];
 static int32_t layer_values[4][CHANNELS], sampled[4][CHANNELS];
 static uint32_t words[4][16];
@@ -94,23 +96,33 @@ static void play(const char *script) {
     }
 }
 
-static void steer(const char *script, pantin_source *source, int blends) {
+static void print_state(void) {
+    printf("%u %u %u ", character.state, pantin_character_held(&character, 0), pantin_character_held(&character, 1));
+    print(&character.animator);
+}
+
+static void steer(const char *script, pantin_source *source, int lent) {
     long long n[8];
-    int count;
+    int count, blends = lent & 1;
     char word;
-    uint8_t without = PANTIN_WITHOUT_LAYERS | PANTIN_WITHOUT_FEET | PANTIN_WITHOUT_BLENDS, i;
-    pantin_result opened = pantin_character_open(&character, source, &memory, (uint8_t)(blends ? PANTIN_WITHOUT_FEET : without));
+    uint8_t without = (uint8_t)((blends ? 0 : PANTIN_WITHOUT_LAYERS | PANTIN_WITHOUT_BLENDS) | (lent & 2 ? 0 : PANTIN_WITHOUT_FEET)), i;
+    pantin_result opened = pantin_character_open(&character, source, &memory, without), held;
     if (opened == PANTIN_OK && blends) opened = pantin_character_second(&character, &second, second_moving, STATES, second_values, CHANNELS);
     for (i = 0; opened == PANTIN_OK && blends && i < character.counts[7]; i++) {
         opened = pantin_character_layer(&character, &layers[i], layer_moving[i], STATES, layer_values[i], sampled[i], CHANNELS, words[i], 16);
     }
+    if (opened == PANTIN_OK && lent & 2) {
+        held = pantin_character_feet(&character, &feet);
+        if (held != PANTIN_NOT_FOUND) opened = held;
+    }
     if (opened != PANTIN_OK) {
+        memset(&character, 0, sizeof character);
+        if (pantin_character_feet(&character, &feet) == PANTIN_OK) puts("feet before it was opened");
         if (pantin_character_update(&character, 1) == PANTIN_OK) puts("an update before it was opened");
         puts("refused");
         return;
     }
-    printf("%u ", character.state);
-    print(&character.animator);
+    print_state();
     while ((script = next_line(script, &word, n, &count)) != NULL) {
         pantin_result result;
         switch (word) {
@@ -125,8 +137,8 @@ static void steer(const char *script, pantin_source *source, int blends) {
             } else {
                 printf("%u", character.entered);
             }
-            printf(" %u ", character.state);
-            print(&character.animator);
+            putchar(' ');
+            print_state();
         }
     }
 }
@@ -176,7 +188,7 @@ int main(int argc, char **argv) {
     if (strcmp(argv[1], "steer") == 0) {
         bytes[0] = file(argv[3], &length);
         while ((bank = next_bank(bytes[0], length, &at, &sources[0])) != NULL) {
-            steer(script, &sources[0], argc > 4 && atoi(argv[4]));
+            steer(script, &sources[0], argc > 4 ? atoi(argv[4]) : 0);
             free(bank);
         }
         free(bytes[0]);

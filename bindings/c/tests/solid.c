@@ -20,6 +20,12 @@ static pantin_slot slots[PANTIN_FIGURE_SLOTS];
 static pantin_joint_info scratch[JOINTS];
 static pantin_solid solid;
 
+/* A second figure of the same rig, which stands in the first one's world. */
+static pantin_bone other_bones[BONES];
+static pantin_drive other_drives[DRIVES];
+static pantin_slot other_slots[PANTIN_FIGURE_SLOTS];
+static pantin_solid other;
+
 static const struct {
     uint16_t width, height;
     pantin_view view;
@@ -36,6 +42,13 @@ static pantin_result draw_lines(int format, void *rows, size_t stride, uint16_t 
     return pantin_figure_draw(&solid.figure, (pantin_format)format, rows, stride, y0, y1, 1);
 }
 
+static pantin_result draw_both(int format, void *rows, size_t stride, uint16_t y0, uint16_t y1) {
+    const pantin_solid *both[2];
+    both[0] = &solid;
+    both[1] = &other;
+    return pantin_solid_draw_together(both, 2, (pantin_format)format, rows, stride, y0, y1, 1);
+}
+
 static void print(const int32_t *values) {
     pantin_solid_pose(&solid, values);
     printf("%08x", (unsigned)checksum(draw_solid, solid.figure.width, solid.figure.height));
@@ -43,8 +56,8 @@ static void print(const int32_t *values) {
     printf(" %08x\n", (unsigned)checksum(draw_lines, solid.figure.width, solid.figure.height));
 }
 
-/* The pose somewhere in the world, near the origin or far. */
-static void print_at(const int32_t *values, uint32_t n) {
+/* Somewhere in the world, near the origin or far. */
+static pantin_placement stand(uint32_t n) {
     pantin_placement at;
     uint32_t x = n * 1664525u + 1013904223u;
     uint8_t i;
@@ -53,6 +66,21 @@ static void print_at(const int32_t *values, uint32_t n) {
         at.place[i] = (int64_t)((int32_t)(x & 0xffffff00u) >> (n % 20)) * (n % 20 ? 1 : 0x1000001);
     }
     at.heading = n % 5 ? (int32_t)(x * 5 & 0xffffff00u) : 0;
+    return at;
+}
+
+/* The pose in two places of one world. */
+static void print_both(const int32_t *values, uint32_t n) {
+    pantin_placement at = stand(n);
+    pantin_solid_pose_at(&solid, values, &at);
+    at = stand(n + 7);
+    pantin_solid_pose_at(&other, values, &at);
+    printf("both %08x\n", (unsigned)checksum(draw_both, solid.figure.width, solid.figure.height));
+}
+
+/* The pose somewhere in the world. */
+static void print_at(const int32_t *values, uint32_t n) {
+    pantin_placement at = stand(n);
     pantin_solid_pose_at(&solid, values, &at);
     printf("at %08x", (unsigned)checksum(draw_solid, solid.figure.width, solid.figure.height));
     pantin_figure_pose_at(&solid.figure, values, &at);
@@ -75,6 +103,23 @@ static int set_up(pantin_player *player, uint8_t shot) {
     need(draw_solid(PANTIN_L8, bones, solid.figure.width, 0, (uint16_t)(solid.figure.height + 1)) == PANTIN_NOT_FOUND, "rows beyond the display");
     need(draw_solid(PANTIN_RGB565, bones, solid.figure.width * 2u - 1, 0, 1) == PANTIN_NO_ROOM, "a short row");
     return 1;
+}
+
+/* Sets the second figure up in the world of the first. */
+static void share(pantin_player *player, uint8_t shot) {
+    const pantin_solid *many[PANTIN_SOLID_TOGETHER + 1];
+    uint8_t i;
+    for (i = 0; i <= PANTIN_SOLID_TOGETHER; i++) many[i] = &solid;
+    memset(&other, 0, sizeof other);
+    need(draw_both(PANTIN_L8, bones, 4096, 0, 0) == PANTIN_NOT_FOUND, "a figure that was not set up");
+    pantin_figure_memory(&other.figure, other_bones, BONES, other_drives, DRIVES, other_slots, PANTIN_FIGURE_SLOTS);
+    need(pantin_solid_set_up(&other, player, 33, 44, scratch, JOINTS) == PANTIN_OK, "set up");
+    need(draw_both(PANTIN_L8, bones, 4096, 0, 0) == PANTIN_NOT_FOUND, "figures of two sizes");
+    need(pantin_solid_draw_together(many, PANTIN_SOLID_TOGETHER + 1, PANTIN_L8, bones, 4096, 0, 0, 1) == PANTIN_NO_ROOM, "many figures");
+    need(pantin_solid_draw_together(many, 0, PANTIN_L8, bones, 4096, 0, 0, 1) == PANTIN_ERROR_HEAD, "no figures");
+    pantin_solid_share_camera(&other, &solid);
+    need(pantin_solid_set_up(&other, player, shots[shot].width, shots[shot].height, scratch, JOINTS) == PANTIN_OK, "set up");
+    pantin_solid_share_camera(&other, &solid);
 }
 
 static void mutants(pantin_player *player, const char *path, uint32_t count) {
@@ -111,10 +156,12 @@ static void frames(pantin_player *player) {
             continue;
         }
         printf("build %u\n", solid.build);
+        share(player, shot);
         for (frame = 0; frame < player->clip->frames; frame += STEP) {
             need(pantin_seek(player, frame) == PANTIN_OK, "seek");
             print(pose);
             if (frame % (4 * STEP) == 0) print_at(pose, frame / STEP);
+            if (frame % (6 * STEP) == 0) print_both(pose, frame / STEP);
         }
     }
     /* Poses that no clip contains. */
@@ -125,6 +172,7 @@ static void frames(pantin_player *player) {
         }
         print(pose);
         print_at(pose, n);
+        print_both(pose, n);
     }
     need(pantin_restart(player) == PANTIN_OK, "restart");
     for (n = 0; n < 4 && solid.figure.width; n++) {

@@ -302,3 +302,19 @@ fn figures_of_one_world_are_sorted_among_each_other() {
         assert!(seen > 100 && seen * 10 < far_alone * 9, "{seen} of {far_alone}");
     });
 }
+
+#[test]
+fn the_floor_does_not_cover_a_figure_of_lines() {
+    let bytes = include_bytes!("../../../tests/vectors/channels-300.ptn");
+    let mut memory = Room::<512, 512>::new();
+    let mut player = memory.player(Clip::new_checked(bytes).unwrap()).unwrap();
+    let canvas = Canvas { width: 176, height: 220 };
+    let mut figure = SolidFigure::<254>::of_clip(&mut player, canvas, View::default(), Look::DEFAULT).unwrap();
+    assert_eq!(figure.build(), Build::Lines);
+    player.seek(0);
+    figure.set_pose(player.pose()).unwrap();
+    let (mut alone, mut together) = (Target::<Rgb888>::new([176, 220]), Target::<Rgb888>::new([176, 220]));
+    figure.draw_on(&mut pantin_figure::surface::OnTarget::new(&mut alone), true);
+    draw_together(&mut [&mut figure], &mut pantin_figure::surface::OnTarget::new(&mut together), true);
+    assert!(alone == together, "the floor covers the lines");
+}

@@ -55,6 +55,14 @@ pub fn text() -> String {
     table(&mut text, "int32_t", "half_angle", &half_angle.collect());
     let inverse_root: Value = (0..386).map(|index| json!(q22(1.0 / (1.0 + f64::from(index) / 128.0).sqrt()))).collect();
     table(&mut text, "int32_t", "inverse_root", &inverse_root);
+    // By the smaller component of a unit vector in 1/128: the nearest angle of the circle.
+    let nearest: Value = (0..93)
+        .map(|index| {
+            let sine = f64::from(2 * index + 1) / 256.0;
+            json!((0..16).take_while(|angle| ((f64::from(*angle) + 0.5) * TAU / 128.0).sin() <= sine).count())
+        })
+        .collect();
+    table(&mut text, "uint8_t", "nearest", &nearest);
     text + "#endif\n\n#endif\n"
 }
 

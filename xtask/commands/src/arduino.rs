@@ -7,11 +7,16 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use harness::paths;
-use pantin_convert::export::source::c_header;
+use pantin_convert::export::source::{c_header, c_header_of_bank, c_header_of_look};
+use pantin_figure::solid::look_text;
 
-/// Our clips, and the examples that include their headers.
-const CLIPS: [(&str, &[&str]); 2] =
-    [("walk.ptn", &["OledAdafruit", "OledU8g2", "TftESPI", "Servos"]), ("face/hello.ptn", &["Face"])];
+/// Our clips, a bank and a character of the solid figure, and the examples that include their headers.
+const CLIPS: [(&str, &[&str]); 4] = [
+    ("walk.ptn", &["OledAdafruit", "OledU8g2", "TftESPI", "Servos", "SolidGC9A01"]),
+    ("face/hello.ptn", &["Face"]),
+    ("character.ptb", &["SteerTFT"]),
+    ("looks/cat.look", &["SolidGC9A01"]),
+];
 
 /// The line of `library.properties` by which a folder is known to be this library.
 const NAME: &str = "name=Pantin";
@@ -59,7 +64,14 @@ pub fn write(folder: &Path) -> Result<usize> {
         let path = paths::root().join("motions").join(clip);
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
-        let header = c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, &name)?;
+        let header = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("ptb") => c_header_of_bank(&pantin::Bank::new_checked(&bytes)?, &bytes, &name)?,
+            Some("look") => {
+                let look = look_text::compile(std::str::from_utf8(&bytes)?).map_err(|error| anyhow::anyhow!("{error}"))?;
+                c_header_of_look(&look, &name)
+            }
+            _ => c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, &name)?,
+        };
         for example in examples {
             fs::write(folder.join("examples").join(example).join(format!("{name}.h")), &header)?;
             count += 1;
@@ -110,7 +122,15 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path().join("libraries/Pantin");
         let count = write(&folder).unwrap();
-        let sources = ["pantin.c", "pantin_turn.c", "pantin_figure.c", "pantin_solid.c", "pantin_animator.c", "pantin_face.c"];
+        let sources = [
+            "pantin.c",
+            "pantin_turn.c",
+            "pantin_figure.c",
+            "pantin_solid.c",
+            "pantin_animator.c",
+            "pantin_feet.c",
+            "pantin_face.c",
+        ];
         for name in sources.into_iter().chain([
             "pantin_face_data.h",
             "pantin_format.h",
@@ -121,10 +141,18 @@ mod tests {
             let source = paths::root().join("bindings/c/src").join(name);
             assert_eq!(fs::read(folder.join("src").join(name)).unwrap(), fs::read(source).unwrap());
         }
-        for name in ["src/PantinPlayer.h", "library.properties", "LICENSE-MIT", "LICENSE-APACHE", "examples/Servos/Servos.ino"] {
+        for name in [
+            "src/PantinPlayer.h",
+            "src/PantinCharacter.h",
+            "src/PantinSolid.h",
+            "library.properties",
+            "LICENSE-MIT",
+            "LICENSE-APACHE",
+            "examples/Servos/Servos.ino",
+        ] {
             assert!(folder.join(name).is_file(), "{name}");
         }
-        for name in ["Servos/walk.h", "Face/hello.h"] {
+        for name in ["Servos/walk.h", "Face/hello.h", "SteerTFT/character.h", "SolidGC9A01/cat.h"] {
             assert!(fs::read_to_string(folder.join("examples").join(name)).unwrap().contains("_LEN"), "{name}");
         }
         assert!(!folder.join("tests").exists());

@@ -28,8 +28,8 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, key clips, rotations, figures, solid ones, faces, lips for speech, and the animator.
-const SOURCES: [&str; 8] = [
+/// The decoder, key clips, rotations, figures, solid ones, faces, lips for speech, the animator, and feet.
+const SOURCES: [&str; 9] = [
     "src/pantin.c",
     "src/pantin_keys.c",
     "src/pantin_turn.c",
@@ -38,6 +38,7 @@ const SOURCES: [&str; 8] = [
     "src/pantin_face.c",
     "src/pantin_talk.c",
     "src/pantin_animator.c",
+    "src/pantin_feet.c",
 ];
 /// Defined where key clips are to be played.
 const KEYS: &str = "-DPANTIN_KEYS";
@@ -212,6 +213,7 @@ impl Bindings {
         steps.run("conversions", || conversions(&folder));
         steps.run("lines of figures against the crate's", || figure::lines(&folder));
         steps.run("solid figures against the crate's", || solid::pictures(&folder));
+        steps.run("failed reads of figures", || solid::reads(&folder));
         steps.run("faces against the crate's", || face::pictures(&folder));
         steps.run("what faces promise", || face::rules(&folder));
         steps.run("memory of faces", || face::memory(&folder));
@@ -219,6 +221,7 @@ impl Bindings {
         steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
         steps.run("animators against the crate's", || animator::transitions(&folder));
         steps.run("state machines against the crate's", || animator::machines(&folder));
+        steps.run("feet of characters against the crate's", || animator::feet(&folder));
         steps.run("a face on the test display of LVGL", lvgl::run);
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
@@ -446,6 +449,9 @@ impl Target {
         ensure!(faces > 1000 && faces <= face::MOST_CODE, "faces may take {} bytes", face::MOST_CODE);
         let talk: u64 = self.functions(folder, "src/pantin_talk.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {talk} bytes of code for lips for speech");
+        let feet: u64 = self.functions(folder, "src/pantin_feet.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {feet} bytes of code for feet");
+        ensure!(feet > 1000 && feet <= animator::MOST_FEET_CODE, "feet may take {} bytes", animator::MOST_FEET_CODE);
         let animator: u64 = self.functions(folder, "src/pantin_animator.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {animator} bytes of code for the animator");
         ensure!(animator > 1000 && animator <= animator::MOST_CODE, "the animator may take {} bytes", animator::MOST_CODE);

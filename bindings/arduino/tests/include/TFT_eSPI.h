@@ -6,6 +6,9 @@
 class TFT_eSPI {
   public:
     void init(uint8_t tc = 0);
+    void setRotation(uint8_t rotation);
+    void pushImage(int32_t x, int32_t y, int32_t w, int32_t h, uint16_t *data);
+    void pushImage(int32_t x, int32_t y, int32_t w, int32_t h, const uint16_t *data);
     virtual void drawPixel(int32_t x, int32_t y, uint32_t color);
     virtual void drawLine(int32_t xs, int32_t ys, int32_t xe, int32_t ye, uint32_t color);
     virtual void drawFastHLine(int32_t x, int32_t y, int32_t w, uint32_t color);

@@ -93,6 +93,9 @@ impl<'a> FeetTable<'a> {
         if body.len() != table.entries_at() + ENTRY * table.number(6) {
             return Err(TableError::Truncated);
         }
+        if (0..table.feet()).any(|index| table.foot(index).is_none()) {
+            return Err(TableError::BadValue);
+        }
         let mut before = 0;
         for clip in 0..clips {
             let end = table.end(clip);
@@ -259,6 +262,13 @@ mod tests {
             let mut body = body();
             body[at] = value;
             assert!(FeetTable::new(&sealed(body), 2).is_err(), "{at}: {value}");
+        }
+        // A second foot that no contact names, as it should be and with too many points.
+        for (points, good) in [(4, true), (5, false)] {
+            let mut body = body();
+            body[1] = 2;
+            body.splice(20..20, [9, 0, points, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+            assert_eq!(FeetTable::new(&sealed(body), 2).is_ok(), good, "{points} points");
         }
     }
 }

@@ -34,7 +34,10 @@ pub fn draw_together<const N: usize, R: RotationBackend, S: Surface>(
     }
     let mut painter = Painter::on(surface);
     for (index, figure) in figures.iter().take(MOST_FIGURES).enumerate().filter(|_| floor) {
-        figure.body().draw_floor(&mut painter, index == 0);
+        // A figure of lines was drawn with its ground.
+        if !matches!(figure.kind, Kind::Lines) {
+            figure.body().draw_floor(&mut painter, index == 0);
+        }
     }
     // The next part of each figure, and the joints of those before it.
     let mut next = [(0usize, 0u64); MOST_FIGURES];

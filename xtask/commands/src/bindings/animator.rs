@@ -1,10 +1,13 @@
 //! The animator in C: poses, placements and events of the crate pantin-animator, at every frame.
 
+mod feet;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use harness::animator::{self as reference, Sequence};
+pub use feet::own_bank;
+use harness::animator::{self as reference, Lent, Sequence};
 use harness::{paths, vectors};
 use pantin::Clip;
 use pantin_animator::machine::Table;
@@ -16,6 +19,9 @@ use super::{KEYS, host_program_with, output};
 /// Bytes of code that the animator may take on a Cortex-M0 or RV32IMC, without the decoder and rotations: 20 KB on a Cortex-M0 are the goal.
 pub const MOST_CODE: u64 = 23 * 1024;
 
+/// Bytes of code that feet may take on a Cortex-M0 or RV32IMC, beside the animator and figures.
+pub const MOST_FEET_CODE: u64 = 12 * 1024;
+
 /// Scripts for each group of clips, their lines, and updates of the state machine of our character.
 const SCRIPTS: u64 = 6;
 const LINES: u32 = 300;
@@ -23,6 +29,9 @@ const UPDATES: u32 = 4000;
 /// Banks with random tables, and updates of each.
 const TABLES: u32 = 3000;
 const FEW_UPDATES: u32 = 25;
+/// Random tables of feet for each bank, and updates of each.
+const FEET_TABLES: u32 = 150;
+const FEET_UPDATES: u32 = 200;
 /// Pictures a second at which the recorded session is played.
 const RATES: [u64; 4] = [7, 30, 60, 144];
 
@@ -100,8 +109,9 @@ pub fn machines(folder: &TempDir) -> Result<()> {
         RATES.iter().map(|&rate| reference::recorded(&session, &table, rate)).collect::<Option<_>>().context("a session")?;
     scripts.push(reference::inputs(&table, UPDATES, &mut Sequence(1)));
     for (at, script) in scripts.iter().enumerate() {
-        for blends in [true, false] {
-            compare(folder, &programs, &format!("script {at} of the character"), &[&character], script, blends)?;
+        for second in [true, false] {
+            let lent = Lent { second, feet: false };
+            compare(folder, &programs, &format!("script {at} of the character"), &[&character], script, lent)?;
         }
     }
     let bank = std::fs::read(vectors::folder().join("bank.ptb"))?;
@@ -111,18 +121,47 @@ pub fn machines(folder: &TempDir) -> Result<()> {
     let banks: Vec<&[u8]> = banks.iter().map(Vec::as_slice).collect();
     let any = banks.iter().find_map(|bank| Table::of_bank(bank).ok().filter(|table| table.inputs() == 4)).context("a table")?;
     let script = reference::inputs(&any, FEW_UPDATES, &mut numbers);
-    let played = compare(folder, &programs, "random tables", &banks, &script, true)?;
+    let played = compare(folder, &programs, "random tables", &banks, &script, Lent { second: true, feet: false })?;
     println!("   {} scripts of our character, {TABLES} random tables, {played} of them play", scripts.len());
     ensure!(played > TABLES as usize / 10, "few tables play");
     parts(folder, &programs, &character)?;
-    reads(folder)
+    reads(folder, &motion("character.ptb"))
+}
+
+/// Compares characters whose feet are held: our own in several forms and captured ones over a recorded session and random inputs, and random tables of feet.
+pub fn feet(folder: &TempDir) -> Result<()> {
+    let programs = programs(folder)?;
+    let session = std::fs::read_to_string(motion("steer.txt"))?;
+    let (mut numbers, mut scripts, mut played, mut held) = (Sequence(9), 0, 0, 0);
+    for bank in feet::banks(folder)? {
+        let table = Table::of_bank(&bank.bytes).map_err(|error| anyhow::anyhow!("{error}"))?;
+        let mut texts: Vec<String> = RATES.iter().filter_map(|&rate| reference::recorded(&session, &table, rate)).collect();
+        texts.push(reference::inputs(&table, UPDATES, &mut numbers));
+        let lent = Lent { second: bank.same_form, feet: true };
+        for text in &texts {
+            compare(folder, &programs, &bank.name, &[&bank.bytes], text, lent)?;
+            held += reference::held(&reference::steer(&bank.bytes, lent, text));
+        }
+        scripts += texts.len();
+        let others: Vec<Vec<u8>> = (0..FEET_TABLES).map(|_| feet::with_feet(&bank.bytes, &mut numbers)).collect::<Result<_>>()?;
+        let others: Vec<&[u8]> = others.iter().map(Vec::as_slice).collect();
+        let script = reference::inputs(&table, FEET_UPDATES, &mut numbers);
+        played += compare(folder, &programs, &format!("feet of {}", bank.name), &others, &script, lent)?;
+        parts(folder, &programs, &bank.bytes)?;
+        if bank.name == "ours" {
+            reads(folder, &write(folder, "feet.ptb", &bank.bytes)?)?;
+        }
+    }
+    println!("   {scripts} scripts, feet held in {held} updates, {played} random tables of feet play");
+    ensure!(held > 10_000 && played > FEET_TABLES as usize, "little was held");
+    Ok(())
 }
 
 /// Each read of a paged source that fails ends the call in which it happens, which then can be repeated.
-fn reads(folder: &TempDir) -> Result<()> {
+fn reads(folder: &TempDir, bank: &Path) -> Result<()> {
     for compiler in ["gcc", "clang"] {
         let mut command = Command::new(host_program_with(folder, compiler, "reads", &[KEYS])?);
-        command.arg(motion("character.ptb"));
+        command.arg(bank);
         let printed = String::from_utf8(output(command)?.stdout)?;
         if compiler == "gcc" {
             printed.lines().for_each(|line| println!("   {line}"));
@@ -132,12 +171,12 @@ fn reads(folder: &TempDir) -> Result<()> {
 }
 
 /// Compares what becomes of banks; the number of those that play.
-fn compare(folder: &TempDir, programs: &[PathBuf], what: &str, banks: &[&[u8]], script: &str, blends: bool) -> Result<usize> {
-    let outcomes: Vec<String> = banks.iter().map(|bank| reference::steer(bank, blends, script)).collect();
+fn compare(folder: &TempDir, programs: &[PathBuf], what: &str, banks: &[&[u8]], script: &str, lent: Lent) -> Result<usize> {
+    let outcomes: Vec<String> = banks.iter().map(|bank| reference::steer(bank, lent, script)).collect();
     let (script, banks) = (write(folder, "inputs", script)?, write(folder, "banks", prefixed(banks))?);
     for program in programs {
         let mut command = Command::new(program);
-        command.arg("steer").arg(&script).arg(&banks).arg(u8::from(blends).to_string());
+        command.arg("steer").arg(&script).arg(&banks).arg((u8::from(lent.second) + 2 * u8::from(lent.feet)).to_string());
         same(what, &outcomes.concat(), &String::from_utf8(output(command)?.stdout)?)?;
     }
     Ok(outcomes.iter().filter(|outcome| *outcome != "refused\n").count())
@@ -156,7 +195,9 @@ fn parts(folder: &TempDir, programs: &[PathBuf], character: &[u8]) -> Result<()>
         let mut command = Command::new(program);
         command.arg("parts").arg(Path::new(&banks));
         let text = String::from_utf8(output(command)?.stdout)?;
-        let expected = |without: usize| if without & 1 == 0 || (feet && without & 2 == 0) { UNSUPPORTED } else { "0" };
+        let layers = Table::of_bank(character).is_ok_and(|table| table.layers() > 0);
+        let expected =
+            |without: usize| if (layers && without & 1 == 0) || (feet && without & 2 == 0) { UNSUPPORTED } else { "0" };
         for (without, result) in text.split_whitespace().enumerate() {
             ensure!(result == expected(without), "without {without} of its parts our character gives {result}");
         }

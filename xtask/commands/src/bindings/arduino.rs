@@ -6,10 +6,11 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use harness::vectors::own;
 use harness::{build, paths};
-use pantin_convert::export::source::c_header;
+use pantin_convert::export::source::{c_header, c_header_of_bank};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use super::animator::own_bank;
 use super::{output, uno};
 use crate::arduino;
 
@@ -75,6 +76,8 @@ pub fn classes(folder: &TempDir) -> Result<()> {
     own::convert(&build::host_tool()?, &paths::root().join("motions/library/run.keys"), &clip, &[])?;
     let bytes = std::fs::read(&clip)?;
     std::fs::write(place.join("run.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "run")?)?;
+    let hero = own_bank(folder)?;
+    std::fs::write(place.join("hero.h"), c_header_of_bank(&pantin::Bank::new_checked(&hero)?, &hero, "hero")?)?;
     let program = place.join("classes");
     let mut objects = vec![];
     for source in super::SOURCES {
@@ -89,7 +92,7 @@ pub fn classes(folder: &TempDir) -> Result<()> {
     compiler.arg(arduino::home().join("tests/library.cpp")).args(objects).arg("-o").arg(&program);
     output(compiler)?;
     let printed = String::from_utf8(output(Command::new(&program))?.stdout)?;
-    ensure!(printed.lines().count() == 2, "{printed}");
+    ensure!(printed.lines().count() == 4, "{printed}");
     printed.lines().for_each(|line| println!("   {line}"));
     Ok(())
 }
@@ -269,7 +272,7 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     let version = format!("version: \"{}\"", property("version").unwrap_or_default());
     ensure!(read("idf_component.yml")?.lines().any(|line| line == version), "the version of idf_component.yml");
     let sources: Vec<String> = read("CMakeLists.txt")?.split('"').skip(1).step_by(2).map(str::to_owned).collect();
-    ensure!(sources.len() == 8 && sources.iter().all(|path| home.join(path).exists()), "the paths of CMakeLists.txt");
+    ensure!(sources.len() == 9 && sources.iter().all(|path| home.join(path).exists()), "the paths of CMakeLists.txt");
     let Some(pio) = xtask::paths::program("pio") else {
         println!("   `pio pkg pack` skipped: PlatformIO is not installed (pip install platformio)");
         return Ok(());

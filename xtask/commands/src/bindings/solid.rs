@@ -9,7 +9,7 @@ use harness::paths;
 use harness::vectors::faces::{Picture, sum_of};
 use pantin::{Angle, Player, Pose};
 use pantin_figure::ink::Ink;
-use pantin_figure::solid::{Build, Look, SolidFigure, look_text};
+use pantin_figure::solid::{Build, Look, SolidFigure, draw_together, look_text};
 use pantin_figure::surface::OnTarget;
 use pantin_figure::{CameraTarget, Canvas, DrawStyle, Stand, View};
 use tempfile::TempDir;
@@ -57,6 +57,8 @@ fn stand(n: u32) -> Stand {
 /// A solid figure on a display of a size.
 struct Drawn {
     figure: SolidFigure<BONES>,
+    /// Another figure in the world of the first.
+    other: SolidFigure<BONES>,
     size: [u16; 2],
 }
 
@@ -66,7 +68,11 @@ impl Drawn {
         let (size, view) = shots()[shot];
         let canvas = Canvas { width: size[0], height: size[1] };
         player.rewind();
-        Some(Drawn { figure: SolidFigure::of_clip(player, canvas, view, look).ok()?, size })
+        let figure = SolidFigure::of_clip(player, canvas, view, look).ok()?;
+        player.rewind();
+        let mut other = SolidFigure::of_clip(player, canvas, view, Look::DEFAULT).ok()?;
+        other.share_camera(&figure);
+        Some(Drawn { figure, other, size })
     }
 
     /// Prints the checksums of a pose's pictures: solid, and as lines.
@@ -83,6 +89,20 @@ impl Drawn {
         let [solid, lines] = self.sums();
         writeln!(text, "at {solid:08x} {lines:08x}")?;
         Ok(())
+    }
+
+    /// Prints the checksum of a picture with a pose in two places of one world.
+    fn print_both(&mut self, text: &mut String, pose: Pose<'_>, n: u32) -> Result<()> {
+        self.figure.set_pose_at(pose, stand(n))?;
+        self.other.set_pose_at(pose, stand(n + 7))?;
+        writeln!(text, "both {:08x}", sum_of(&self.both(), &self.both(), &self.both()))?;
+        Ok(())
+    }
+
+    fn both<C: Ink>(&mut self) -> Picture<C> {
+        let mut picture = Picture::new(self.size);
+        draw_together(&mut [&mut self.figure, &mut self.other], &mut OnTarget::new(&mut picture), true);
+        picture
     }
 
     /// Checksums of the picture of the body, and of that of lines.
@@ -118,11 +138,12 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
     let clips = files()?.into_iter().filter(|(clip, _)| clip.extension().is_some_and(|extension| extension == "ptn"));
     cases.extend(clips.map(|(clip, rig)| (clip, None, rig)));
     let programs = ["gcc", "clang"].map(|compiler| host_program(folder, compiler, "solid"));
-    let (mut pictures, mut people, mut stands) = (0, 0, 0);
+    let (mut pictures, mut people, mut stands, mut together) = (0, 0, 0, 0);
     for (clip, look, rig) in &cases {
         let expected = text(clip, look.as_deref(), rig.as_deref()).with_context(|| clip.display().to_string())?;
         pictures += expected.lines().filter(|line| line.len() == 17).count();
         stands += expected.matches("at ").count();
+        together += expected.matches("both ").count();
         people += expected.matches("build 2").count();
         for program in &programs {
             let mut command = Command::new(program.as_ref().map_err(|error| anyhow::anyhow!("{error:#}"))?);
@@ -140,10 +161,23 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
     }
     let refused = expected.lines().filter(|line| *line == "refused").count();
     println!(
-        "   {} clips, {people} people, {pictures} poses, {stands} of them also somewhere in the world, {MUTANTS} damaged characters ({refused} refused)",
+        "   {} clips, {people} people, {pictures} poses, {stands} of them also somewhere in the world, {together} with two figures, {MUTANTS} damaged characters ({refused} refused)",
         cases.len()
     );
-    ensure!(people > 40 && stands > 1000, "few people or stands");
+    ensure!(people > 40 && stands > 1000 && together > 1000, "few people or stands");
+    Ok(())
+}
+
+/// Each read of a paged source that fails while a figure is set up ends the call, which then can be repeated.
+pub fn reads(folder: &TempDir) -> Result<()> {
+    for compiler in ["gcc", "clang"] {
+        let mut command = Command::new(host_program(folder, compiler, "solid_reads")?);
+        command.arg(paths::root().join("motions/walk.ptn"));
+        let printed = String::from_utf8(output(command)?.stdout)?;
+        if compiler == "gcc" {
+            printed.lines().for_each(|line| println!("   {line}"));
+        }
+    }
     Ok(())
 }
 
@@ -177,6 +211,9 @@ fn text(clip: &Path, look: Option<&Path>, rig: Option<&Path>) -> Result<String> 
             if frame % (4 * STEP) == 0 {
                 drawn.print_at(&mut text, player.pose(), frame / STEP)?;
             }
+            if frame % (6 * STEP) == 0 {
+                drawn.print_both(&mut text, player.pose(), frame / STEP)?;
+            }
         }
         last = Some(drawn);
     }
@@ -191,6 +228,7 @@ fn text(clip: &Path, look: Option<&Path>, rig: Option<&Path>) -> Result<String> 
             let pose = Pose { values: &values, form: player.pose().form };
             drawn.print(&mut text, pose)?;
             drawn.print_at(&mut text, pose, n)?;
+            drawn.print_both(&mut text, pose, n)?;
         }
     }
     Ok(text)
