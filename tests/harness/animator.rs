@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fixed::types::I16F16;
-use pantin::{Angle, ChannelState, Clip};
+use pantin::{Angle, Bank, ChannelState, Clip};
 use pantin_animator::machine::TableError;
 use pantin_animator::machine::{LAYERS, SECTION, Table};
 use pantin_animator::session::{Input, Session};
@@ -152,6 +152,28 @@ pub fn with_table(bank: &[u8], clips: u32, numbers: &mut Sequence) -> Vec<u8> {
     pantin::codec::varint::put(body.len() as u32, &mut |byte| bytes.push(byte));
     bytes.extend(body);
     bytes
+}
+
+/// A bank that is damaged in one or two places; its checksums are right, mostly.
+pub fn damaged(sources: &[Vec<u8>], numbers: &mut Sequence) -> Vec<u8> {
+    let mut bytes = sources[numbers.below(sources.len() as u32) as usize].clone();
+    for _ in 0..=numbers.below(2) {
+        let at = numbers.below(bytes.len() as u32) as usize;
+        bytes[at] ^= 1 << numbers.below(8);
+    }
+    if numbers.below(8) > 0 {
+        hostile::fix::bank(&mut bytes);
+        hostile::fix::clips_of_bank(&mut bytes);
+        mend_table(&mut bytes);
+    }
+    bytes
+}
+
+/// Makes the checksum of a bank's table right, as far as its sections can be told.
+fn mend_table(bytes: &mut [u8]) {
+    let Some(table) = Bank::new_checked(bytes).ok().and_then(|bank| bank.section(SECTION).ok().flatten()) else { return };
+    let (at, len) = (table.as_ptr().addr() - bytes.as_ptr().addr(), table.len());
+    hostile::fix::rig(&mut bytes[at..at + len]);
 }
 
 /// A clip in another form: one bit of its head, which says how a joint is coded, is inverted, and its CRC is computed again.

@@ -8,6 +8,9 @@ import { bankOf } from "../../web/packages/player/bank.js";
 import { opened } from "../../web/packages/player/character.js";
 import { partOf } from "../../web/packages/player/track.js";
 
+// Pages lend no feet: no joint holds one.
+const NO_FEET = "65535 65535";
+
 const [, , what, script, ...files] = process.argv;
 const lines = readFileSync(script, "utf8").split("\n").filter(Boolean).map((line) => [line[0], ...line.slice(1).split(" ").filter(Boolean).map(Number)]);
 const out = [];
@@ -61,14 +64,14 @@ function steer(file) {
   };
   if (refuses(open)) return out.push("refused\n");
   const { animator } = character;
-  print(`${character.state} 65535 65535 `, animator);
+  print(`${character.state} ${NO_FEET} `, animator);
   for (const [word, ...n] of lines) {
     if (word === "f") character.fire(n[0]);
     else if (word === "h" || word === "r") character.hold(n[0], word === "h");
     else if (word === "s") character.set(...n);
     else {
       const isRefused = refuses(() => character.update(n[0]));
-      print(`${isRefused ? "refused" : +character.entered} ${character.state} 65535 65535 `, animator);
+      print(`${isRefused ? "refused" : +character.entered} ${character.state} ${NO_FEET} `, animator);
     }
   }
 }

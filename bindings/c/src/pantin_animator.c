@@ -880,7 +880,7 @@ static int carry(pantin_animator *a) {
     if (a->carried) return 1;
     if (moving_count(p) != p->moving_count) return 0;
     for (m = 0; m < p->moving_count; m++) {
-        if (p->moving[m].leader && p->moving[m].leader != 255) return 0;
+        if (p->moving[m].leader) return 0;
     }
     for (m = 0; m < p->moving_count; m++) {
         pantin_offset *o = &a->memory->offsets[p->moving[m].channel];
@@ -1710,10 +1710,12 @@ static pantin_result find_carrier(pantin_character *c, const pantin_animator_mem
         pantin_joint joint;
         pantin_state_row row;
         pantin_result result;
-        if (done && c->bank.rig.channels <= memory->moving_room && c->bank.rig.channels <= memory->channel_room) break;
         pantin_animator_read_state(c, state, &row);
         result = open_clip(c, row.clip, &t->clip);
-        if (result == PANTIN_OK) result = start_player(t, memory->moving, memory->moving_room, memory->values, memory->channel_room);
+        if (result != PANTIN_OK) return result;
+        /* Then a player would neither change the carrier nor lack memory. */
+        if (done && c->bank.rig.channels <= memory->moving_room && c->bank.rig.channels <= memory->channel_room) continue;
+        result = start_player(t, memory->moving, memory->moving_room, memory->values, memory->channel_room);
         if (result != PANTIN_OK) return result;
         pantin_first_joint(&joint, &t->clip.rig);
         while (pantin_next_joint(&joint) && joint.index < carrier) {

@@ -29,6 +29,8 @@ const UPDATES: u32 = 4000;
 /// Banks with random tables, and updates of each.
 const TABLES: u32 = 3000;
 const FEW_UPDATES: u32 = 25;
+/// Damaged banks.
+const DAMAGED: u32 = 3000;
 /// Random tables of feet for each bank, and updates of each.
 const FEET_TABLES: u32 = 150;
 const FEET_UPDATES: u32 = 200;
@@ -118,12 +120,21 @@ pub fn machines(folder: &TempDir) -> Result<()> {
     let clips = pantin::Bank::new_checked(&bank)?.len() as u32;
     let mut numbers = Sequence(5);
     let banks: Vec<Vec<u8>> = (0..TABLES).map(|_| reference::with_table(&bank, clips, &mut numbers)).collect();
-    let banks: Vec<&[u8]> = banks.iter().map(Vec::as_slice).collect();
     let any = banks.iter().find_map(|bank| Table::of_bank(bank).ok().filter(|table| table.inputs() == 4)).context("a table")?;
     let script = reference::inputs(&any, FEW_UPDATES, &mut numbers);
-    let played = compare(folder, &programs, "random tables", &banks, &script, Lent { second: true, feet: false })?;
+    let lent = Lent { second: true, feet: false };
+    let all = |banks: &[Vec<u8>], what| {
+        compare(folder, &programs, what, &banks.iter().map(Vec::as_slice).collect::<Vec<_>>(), &script, lent)
+    };
+    let played = all(&banks, "random tables")?;
     println!("   {} scripts of our character, {TABLES} random tables, {played} of them play", scripts.len());
     ensure!(played > TABLES as usize / 10, "few tables play");
+    let play = |bank: &&Vec<u8>| Table::of_bank(bank).is_ok();
+    let sources: Vec<Vec<u8>> = banks.iter().filter(play).take(20).cloned().chain(vec![character.clone(); 10]).collect();
+    let damaged: Vec<Vec<u8>> = (0..DAMAGED).map(|_| reference::damaged(&sources, &mut numbers)).collect();
+    let played = all(&damaged, "damaged banks")?;
+    println!("   {DAMAGED} damaged banks, {played} of them play");
+    ensure!((DAMAGED / 10..DAMAGED * 9 / 10).contains(&(played as u32)), "nearly all or none of the damaged banks play");
     parts(folder, &programs, &character)?;
     reads(folder, &motion("character.ptb"))
 }
