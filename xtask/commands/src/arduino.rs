@@ -122,7 +122,15 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path().join("libraries/Pantin");
         let count = write(&folder).unwrap();
-        let sources = ["pantin.c", "pantin_turn.c", "pantin_figure.c", "pantin_solid.c", "pantin_animator.c", "pantin_feet.c", "pantin_face.c"];
+        let sources = [
+            "pantin.c",
+            "pantin_turn.c",
+            "pantin_figure.c",
+            "pantin_solid.c",
+            "pantin_animator.c",
+            "pantin_feet.c",
+            "pantin_face.c",
+        ];
         for name in sources.into_iter().chain([
             "pantin_face_data.h",
             "pantin_format.h",
@@ -133,7 +141,15 @@ mod tests {
             let source = paths::root().join("bindings/c/src").join(name);
             assert_eq!(fs::read(folder.join("src").join(name)).unwrap(), fs::read(source).unwrap());
         }
-        for name in ["src/PantinPlayer.h", "src/PantinCharacter.h", "src/PantinSolid.h", "library.properties", "LICENSE-MIT", "LICENSE-APACHE", "examples/Servos/Servos.ino"] {
+        for name in [
+            "src/PantinPlayer.h",
+            "src/PantinCharacter.h",
+            "src/PantinSolid.h",
+            "library.properties",
+            "LICENSE-MIT",
+            "LICENSE-APACHE",
+            "examples/Servos/Servos.ino",
+        ] {
             assert!(folder.join(name).is_file(), "{name}");
         }
         for name in ["Servos/walk.h", "Face/hello.h", "SteerTFT/character.h", "SolidGC9A01/cat.h"] {

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+pub use feet::own_bank;
 use harness::{paths, vectors};
 use pantin::Clip;
 use pantin_animator::machine::Table;
-pub use feet::own_bank;
 use reference::{Lent, Sequence};
 use tempfile::TempDir;
 
@@ -144,8 +144,7 @@ pub fn feet(folder: &TempDir) -> Result<()> {
             held += reference::held(&reference::steer(&bank.bytes, lent, text));
         }
         scripts += texts.len();
-        let others: Vec<Vec<u8>> =
-            (0..FEET_TABLES).map(|_| feet::with_feet(&bank.bytes, &mut numbers)).collect::<Result<_>>()?;
+        let others: Vec<Vec<u8>> = (0..FEET_TABLES).map(|_| feet::with_feet(&bank.bytes, &mut numbers)).collect::<Result<_>>()?;
         let others: Vec<&[u8]> = others.iter().map(Vec::as_slice).collect();
         let script = reference::inputs(&table, FEET_UPDATES, &mut numbers);
         played += compare(folder, &programs, &format!("feet of {}", bank.name), &others, &script, lent)?;
@@ -198,7 +197,8 @@ fn parts(folder: &TempDir, programs: &[PathBuf], character: &[u8]) -> Result<()>
         command.arg("parts").arg(Path::new(&banks));
         let text = String::from_utf8(output(command)?.stdout)?;
         let layers = Table::of_bank(character).is_ok_and(|table| table.layers() > 0);
-        let expected = |without: usize| if (layers && without & 1 == 0) || (feet && without & 2 == 0) { UNSUPPORTED } else { "0" };
+        let expected =
+            |without: usize| if (layers && without & 1 == 0) || (feet && without & 2 == 0) { UNSUPPORTED } else { "0" };
         for (without, result) in text.split_whitespace().enumerate() {
             ensure!(result == expected(without), "without {without} of its parts our character gives {result}");
         }

@@ -74,7 +74,8 @@ transitions = [{ to = \"idle\", end = true }]",
 /// All banks; without captured clips those of our own.
 pub fn banks(folder: &TempDir) -> Result<Vec<FeetBank>> {
     let mut banks = vec![FeetBank { name: "ours".into(), bytes: own_bank(folder)?, same_form: true }];
-    let motions: Vec<PathBuf> = MOTIONS.iter().map(|name| paths::root().join("motions/library").join(name).with_extension("keys")).collect();
+    let motions: Vec<PathBuf> =
+        MOTIONS.iter().map(|name| paths::root().join("motions/library").join(name).with_extension("keys")).collect();
     let motions: Vec<&Path> = motions.iter().map(PathBuf::as_path).collect();
     for (name, options) in FORMS {
         let same_form = options.contains(&"--same-form");
@@ -106,7 +107,8 @@ pub fn own_bank(folder: &TempDir) -> Result<Vec<u8>> {
 /// The text of our character with its feet held, and transitions that wait.
 fn own_machine() -> Result<String> {
     let text = std::fs::read_to_string(paths::root().join("motions/character.toml"))?;
-    let text = text.replacen("start = \"idle\"", "start = \"idle\"\n\n[feet]", 1).replace("start = \"in-step\"", "sync = \"feet\"");
+    let text =
+        text.replacen("start = \"idle\"", "start = \"idle\"\n\n[feet]", 1).replace("start = \"in-step\"", "sync = \"feet\"");
     ensure!(text.contains("[feet]") && text.contains("sync = \"feet\""), "the text of our character");
     Ok(text)
 }
@@ -137,7 +139,8 @@ pub fn with_feet(file: &[u8], numbers: &mut Sequence) -> Result<Vec<u8>> {
     let rig = bank.open(&first)?.rig();
     let parents: Vec<Option<u16>> = rig.joints().map(|joint| joint.parent).collect();
     let frames: Vec<u32> = bank.entries().map(|entry| Ok(bank.open(&entry)?.frames())).collect::<Result<_>>()?;
-    let transitions = Table::of_bank(file).map_or(8, |table| (0..).take_while(|&index| table.transition(index).is_some()).count());
+    let transitions =
+        Table::of_bank(file).map_or(8, |table| (0..).take_while(|&index| table.transition(index).is_some()).count());
     let feet = 1 + numbers.below(2) as u8;
     let mut counts = vec![];
     let mut rows = vec![];

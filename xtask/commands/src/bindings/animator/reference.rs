@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use fixed::types::I16F16;
 use pantin::{Angle, ChannelState, Clip};
+use pantin_animator::machine::TableError;
 use pantin_animator::machine::{LAYERS, SECTION, Table};
 use pantin_animator::session::{Input, Session};
-use pantin_animator::machine::TableError;
 use pantin_animator::{Animator, Character, Error, Feet, LayerWorkspace, Placement, Transition, Workspace};
 
 /// Memory for every clip of the tests.
