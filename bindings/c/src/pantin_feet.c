@@ -149,7 +149,9 @@ static void quaternion_of(int32_t (*r)[3], int32_t *q) {
     uint8_t i, best = 0;
     size[0] = ONE + r[0][0] + r[1][1] + r[2][2];
     for (i = 0; i < 3; i++) size[i + 1] = ONE + 2 * r[i][i] - r[0][0] - r[1][1] - r[2][2];
-    if (!(size[0] >= size[1] && size[0] >= size[2] && size[0] >= size[3])) best = (uint8_t)(size[1] >= size[2] && size[1] >= size[3] ? 1 : size[2] >= size[3] ? 2 : 3);
+    for (i = 1; i < 4; i++) {
+        if (size[i] > size[best]) best = i;
+    }
     q[best] = size[best];
     for (i = 0; i < 3; i++) {
         uint8_t j = (uint8_t)((i + 1) % 3), k = (uint8_t)((i + 2) % 3);
