@@ -44,8 +44,8 @@ pub mod verify;
 #[doc(hidden)]
 pub use conversion::key_clip;
 pub use conversion::{
-    Converted, Errors, Made, Prepared, Progress, Recipe, Report, SeamReport, agree_on_up, convert, of_one_rig, prepare,
-    shared_coding,
+    Converted, Errors, Made, Prepared, Progress, Recipe, RecordedClip, Recording, Report, SeamReport, agree_on_up, convert,
+    of_one_rig, prepare, shared_coding,
 };
 pub use encode::{bank, rans};
 pub use error::{Error, Problem, Setting};

@@ -37,6 +37,16 @@ impl<'a> Words<'a> {
         anyhow!("{}:{line}: {message}", self.file)
     }
 
+    /// Whether only white space is left.
+    pub fn is_at_end(&self) -> bool {
+        self.rest().iter().all(u8::is_ascii_whitespace)
+    }
+
+    /// What is left behind the word read last.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
     /// Any line end counts one: LF, CR LF, or CR alone.
     fn skip_space(&mut self) {
         while let Some(&byte) = self.bytes.get(self.at) {
