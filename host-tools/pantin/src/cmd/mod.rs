@@ -7,6 +7,7 @@ mod channel_bound;
 pub mod convert;
 mod convert_bank;
 mod convert_list;
+mod convert_stream;
 mod edits;
 mod encoder;
 pub mod expand;
