@@ -38,6 +38,7 @@ mod note;
 pub mod number;
 mod options;
 pub mod pose_bound;
+mod posing;
 pub mod verify;
 
 #[cfg(feature = "internals")]
@@ -57,3 +58,4 @@ pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;
 pub use note::{Note, NoteKind, Place, Remedy, Severity};
 pub use options::{ChannelBound, Options, UseKeys};
+pub use posing::Posing;

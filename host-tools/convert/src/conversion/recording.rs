@@ -24,8 +24,7 @@ use super::prepared::{Prepared, prepare, shared_coding};
 use super::report::Report;
 use crate::error::{Error, Setting};
 use crate::fit::rotation_coding::Coding;
-use crate::import::bvh_stream::BvhStream;
-use crate::import::{ImportOptions, units, unwrap_angles, up};
+use crate::import::{BvhStream, ImportOptions, units, unwrap_angles, up};
 use crate::length::Length;
 use crate::motion::{Motion, Rig};
 use crate::note::{Note, NoteKind};
@@ -129,13 +128,13 @@ impl Recording {
     /// Takes the next bytes of the stream, cut anywhere. Call [`next_clip`](Recording::next_clip) until it has none before the next bytes. After an error no
     /// more bytes can be pushed; the frames before it are still handed out, by `next_clip` and [`rest`](Recording::rest).
     pub fn push(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.stream.push(bytes).map_err(|error| Error::of(&error, Error::source))
+        self.stream.push(bytes)
     }
 
     /// Takes the end of the stream. Fails if it ends within a row or the header, or before as many frames as its header states; as after every error,
     /// the frames before it are still handed out.
     pub fn end(&mut self) -> Result<(), Error> {
-        self.stream.end().map_err(|error| Error::of(&error, Error::source))
+        self.stream.end()
     }
 
     /// Frames of every clip but the last; `None` before the header has come.
@@ -238,5 +237,5 @@ fn form_note(before: &Coding, now: &Coding) -> Note {
         0 => "form: the figure is so far from its origin that positions have coarser steps from here on".to_owned(),
         joints => format!("form: {joints} joints turn so far that they are coded as Euler angles from here on"),
     };
-    Note::info(NoteKind::Frames, text)
+    Note::info(NoteKind::Joints, text)
 }

@@ -19,8 +19,9 @@ const MOST_HEADER_BYTES: usize = 1 << 20;
 /// Most bytes of a row's line: 1023 numbers of 64 letters.
 const MOST_LINE_BYTES: usize = 1 << 16;
 
-/// What stands before the rows.
+/// What stands before the rows of a [`BvhStream`].
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Head {
     /// The figure; its unit of length is not known.
     pub rig: Rig,
@@ -81,10 +82,14 @@ impl BvhStream {
     }
 
     /// Takes the next bytes. After an error nothing more can be pushed; rows that stood before it are ready.
-    pub fn push(&mut self, mut bytes: &[u8]) -> Result<()> {
+    pub fn push(&mut self, mut bytes: &[u8]) -> Result<(), Error> {
+        self.pushed(&mut bytes).map_err(|error| Error::of(&error, Error::source))
+    }
+
+    fn pushed(&mut self, bytes: &mut &[u8]) -> Result<()> {
         while let Some(&first) = bytes.first() {
             if std::mem::take(&mut self.after_cr) && first == b'\n' {
-                bytes = &bytes[1..];
+                *bytes = &bytes[1..];
                 continue;
             }
             let end = bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(bytes.len());
@@ -93,13 +98,17 @@ impl BvhStream {
             let Some((&mark, rest)) = rest.split_first() else { break };
             self.after_cr = mark == b'\r';
             self.end_line()?;
-            bytes = rest;
+            *bytes = rest;
         }
         Ok(())
     }
 
     /// Takes the end of the stream. Fails if it ends within a row or the header, or before as many rows as the header states.
-    pub fn end(&mut self) -> Result<()> {
+    pub fn end(&mut self) -> Result<(), Error> {
+        self.ended().map_err(|error| Error::of(&error, Error::source))
+    }
+
+    fn ended(&mut self) -> Result<()> {
         if self.pending.len() > self.line_start {
             self.end_line()?;
         }
@@ -166,7 +175,7 @@ impl BvhStream {
         self.line_start = 0;
         self.head = Some(head);
         self.row(&rest)?;
-        if at_end { self.end() } else { Ok(()) }
+        if at_end { self.ended() } else { Ok(()) }
     }
 
     /// Takes a line: a row, or white space.

@@ -7,7 +7,7 @@ pub mod animations;
 pub mod arrays;
 mod asf;
 mod bvh;
-pub(crate) mod bvh_stream;
+mod bvh_stream;
 mod ends;
 mod expression;
 mod fap;
@@ -52,6 +52,7 @@ use crate::error::{Error, Setting, require};
 use crate::motion::{Event, Motion, Origin, Rig, Up};
 use crate::note::{Note, NoteKind};
 use anyhow::{Context, Result};
+pub use bvh_stream::{BvhStream, Head};
 pub use files::{Disk, Files, InMemory, read as read_file, read_from};
 pub use format::{FORMATS, Format};
 #[cfg(feature = "gltf")]

@@ -37,9 +37,9 @@ impl<'a> Words<'a> {
         anyhow!("{}:{line}: {message}", self.file)
     }
 
-    /// Whether only white space is left.
+    /// Whether the last look for a word met the end: behind a word that was found, its line end is left.
     pub fn is_at_end(&self) -> bool {
-        self.rest().iter().all(u8::is_ascii_whitespace)
+        self.rest().is_empty()
     }
 
     /// What is left behind the word read last.

@@ -75,7 +75,7 @@ fn record(
 }
 
 /// Reads in a thread of its own: a read that waits cannot be stopped. The thread ends with the program.
-fn read_chunks(path: &Path) -> Result<Receiver<io::Result<Vec<u8>>>> {
+pub(super) fn read_chunks(path: &Path) -> Result<Receiver<io::Result<Vec<u8>>>> {
     let mut source: Box<dyn Read + Send> = match is_stdin(path) {
         true => Box::new(io::stdin()),
         false => Box::new(File::open(path).with_context(|| path.display().to_string())?),
@@ -100,7 +100,7 @@ fn read_chunks(path: &Path) -> Result<Receiver<io::Result<Vec<u8>>>> {
 }
 
 /// The next bytes; `None` at the end, and where `stop` is set.
-fn next_chunk(chunks: &Receiver<io::Result<Vec<u8>>>, stop: &AtomicBool) -> Option<io::Result<Vec<u8>>> {
+pub(super) fn next_chunk(chunks: &Receiver<io::Result<Vec<u8>>>, stop: &AtomicBool) -> Option<io::Result<Vec<u8>>> {
     while !stop.load(Ordering::Relaxed) {
         match chunks.recv_timeout(STOP_CHECK) {
             Ok(chunk) => return Some(chunk),

@@ -23,6 +23,7 @@ pub mod serve;
 mod shard;
 pub mod steer;
 pub mod stream;
+mod stream_body;
 mod stream_live;
 pub mod update;
 
