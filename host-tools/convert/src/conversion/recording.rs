@@ -5,9 +5,9 @@
 //! the head, and the CRC of the first block covers the length. No byte can be written early and patched later, because the coder's state runs
 //! through all of them. (A stream that sends each segment by itself is the link's, `firmware/link/LINK.md`.)
 //!
-//! So a recording is a chain of whole clips. Each holds the frames of at most the stated delay, and the next one begins with the frame behind its last one: what
-//! players show one after the other are the frames of the source, each once, each within the bound. Every clip has been verified by the device's own decoder
-//! before it is handed out, as every clip of [`convert`](super::convert).
+//! So a recording is a chain of whole clips. A clip holds at most as many frames as the delay has, and the next one begins with the frame behind its last one.
+//! Played one after the other, the clips show every frame of the source once, within the bound. The device's own decoder verifies each clip before it is
+//! handed out, as [`convert`](super::convert) does.
 //!
 //! **What is settled once.** All clips have one rig, one unit, one direction that is up, and one bound in cm: a percentage of the figure's height and the default
 //! shell are computed from the first clip's frames. They also have one form, so that one figure renderer plays them all: which joints are exponential maps is
@@ -95,7 +95,7 @@ pub struct RecordedClip {
     pub clip: Vec<u8>,
     /// How far it is from the source.
     pub report: Report,
-    /// What was settled or is odd: all of it with the first clip, later what changed.
+    /// Notes: with the first clip those about the figure and the unit, later those about a changed form.
     pub notes: Vec<Note>,
 }
 

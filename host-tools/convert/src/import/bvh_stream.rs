@@ -1,4 +1,4 @@
-//! BVH that is still being written: the header first, then a row a line for as long as they come.
+//! BVH that is still being written: a header, then rows, one a line, until the stream ends.
 //!
 //! Bytes are pushed in pieces of any size, and where they are cut changes nothing. The number after `Frames:` may be missing, 0 or a word, as a program
 //! that records does not know it. Other than in a file, a row stands on one line: a line of another length is an error at once, where
@@ -19,7 +19,7 @@ const MOST_HEADER_BYTES: usize = 1 << 20;
 /// Most bytes of a row's line: 1023 numbers of 64 letters.
 const MOST_LINE_BYTES: usize = 1 << 16;
 
-/// What stands before the rows of a [`BvhStream`].
+/// The header of a [`BvhStream`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Head {
@@ -27,7 +27,7 @@ pub struct Head {
     pub rig: Rig,
     /// Seconds a frame.
     pub frame_time: f64,
-    /// What is odd about the figure.
+    /// Warnings about the figure.
     pub notes: Vec<Note>,
     /// The number after `Frames:` if it is one above 0, and its line.
     stated: Option<usize>,
@@ -71,7 +71,7 @@ impl BvhStream {
         }
     }
 
-    /// What stands before the rows, once it has come.
+    /// The header; `None` until all of it has come.
     pub fn head(&self) -> Option<&Head> {
         self.head.as_ref()
     }
@@ -208,7 +208,7 @@ impl BvhStream {
     }
 }
 
-/// What stands before the rows.
+/// Reads the header.
 fn head(words: &mut Words) -> Result<Head> {
     let (rig, mut notes) = figure(words)?;
     words.expect("MOTION", "after the hierarchy")?;

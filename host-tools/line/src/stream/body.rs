@@ -102,7 +102,7 @@ impl Body {
         self.left_out
     }
 
-    /// What is to be logged since the last call.
+    /// Returns the lines for the log since the last call.
     pub fn take_log(&mut self) -> Vec<String> {
         std::mem::take(&mut self.log)
     }

@@ -102,7 +102,7 @@ pub(crate) mod tests {
     /// A message's bytes: texts and floats.
     pub fn encoded(address: &str, texts: &[&str], floats: &[f32]) -> Vec<u8> {
         let mut out = Vec::new();
-        let mut put = |text: &str, out: &mut Vec<u8>| {
+        let put = |text: &str, out: &mut Vec<u8>| {
             out.extend(text.as_bytes());
             out.resize((out.len() + 1).next_multiple_of(4), 0);
         };

@@ -53,6 +53,7 @@ use std::sync::OnceLock;
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
   pantin convert captures -o clips --shard 2/8        part 2 of 8, on one of 8 machines
   pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips
+  capture-program | pantin convert - --stream -o take
   pantin convert captures -o moves.ptb
   pantin convert moves.list -o moves.ptb --same-form")]
 pub struct Arguments {
