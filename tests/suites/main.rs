@@ -14,6 +14,7 @@ mod image;
 mod independent;
 mod laws;
 mod link;
+mod live_body;
 mod memory;
 mod panels;
 mod pico;

@@ -38,14 +38,15 @@ mod note;
 pub mod number;
 mod options;
 pub mod pose_bound;
+mod posing;
 pub mod verify;
 
 #[cfg(feature = "internals")]
 #[doc(hidden)]
 pub use conversion::key_clip;
 pub use conversion::{
-    Converted, Errors, Made, Prepared, Progress, Recipe, Report, SeamReport, agree_on_up, convert, of_one_rig, prepare,
-    shared_coding,
+    Converted, Errors, Made, Prepared, Progress, Recipe, RecordedClip, Recording, Report, SeamReport, agree_on_up, convert,
+    of_one_rig, prepare, shared_coding,
 };
 pub use encode::{bank, rans};
 pub use error::{Error, Problem, Setting};
@@ -57,3 +58,4 @@ pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;
 pub use note::{Note, NoteKind, Place, Remedy, Severity};
 pub use options::{ChannelBound, Options, UseKeys};
+pub use posing::Posing;

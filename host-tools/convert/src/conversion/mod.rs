@@ -9,6 +9,7 @@ mod keyed;
 mod left_out;
 mod prepared;
 mod recipe;
+mod recording;
 mod report;
 
 use crate::error::Error;
@@ -22,6 +23,7 @@ pub(crate) use distance::Distance;
 pub use keyed::key_clip;
 pub use prepared::{Made, Prepared, agree_on_up, of_one_rig, prepare, shared_coding};
 pub use recipe::Recipe;
+pub use recording::{RecordedClip, Recording};
 pub use report::{Errors, Report, SeamReport};
 
 /// A clip that keeps its bound.

@@ -37,16 +37,7 @@ const ARMS: [usize; 2] = [3, 6];
 
 /// The source joint of each of the display's; `map` is a map file's text, whose lines go before names.
 pub fn sources(rig: &Rig, map: &str) -> Result<[usize; 15]> {
-    let mut found = mapped(rig, map)?;
-    let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
-    let parts = parts(&names);
-    for (index, (name, _, words)) in DISPLAY.iter().enumerate() {
-        found[index] = found[index].or_else(|| guess(&parts, name, words));
-    }
-    if found[CHEST].is_none() {
-        found[CHEST] =
-            ARMS.iter().map(|&arm| found[arm]).collect::<Option<Vec<_>>>().and_then(|arms| fork(rig, arms[0], arms[1]));
-    }
+    let found = completed(rig, mapped(rig, map)?);
     let missing: Vec<&str> = (0..15).filter(|&index| found[index].is_none()).map(|index| DISPLAY[index].0).collect();
     if !missing.is_empty() {
         let names: Vec<&str> = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str()).collect();
@@ -59,6 +50,25 @@ pub fn sources(rig: &Rig, map: &str) -> Result<[usize; 15]> {
         return Err(Error::setting(Setting::Retarget, text).remedy(Remedy::MapJoints).into());
     }
     Ok(std::array::from_fn(|index| found[index].unwrap_or_default()))
+}
+
+/// The joint of each of the display's by the usual names.
+pub fn found(rig: &Rig) -> [Option<usize>; 15] {
+    completed(rig, [None; 15])
+}
+
+/// The joints that are `found`, and for the others those with the usual names.
+fn completed(rig: &Rig, mut found: [Option<usize>; 15]) -> [Option<usize>; 15] {
+    let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
+    let parts = parts(&names);
+    for (index, (name, _, words)) in DISPLAY.iter().enumerate() {
+        found[index] = found[index].or_else(|| guess(&parts, name, words));
+    }
+    if found[CHEST].is_none() {
+        found[CHEST] =
+            ARMS.iter().map(|&arm| found[arm]).collect::<Option<Vec<_>>>().and_then(|arms| fork(rig, arms[0], arms[1]));
+    }
+    found
 }
 
 fn guess(parts: &[Part], name: &str, words: &[&str]) -> Option<usize> {

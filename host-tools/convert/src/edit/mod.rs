@@ -8,7 +8,7 @@ pub mod contacts;
 pub mod curve;
 pub mod cut;
 pub mod display;
-mod display_names;
+pub(crate) mod display_names;
 mod edits;
 pub mod find_loop;
 pub mod footsteps;

@@ -91,6 +91,17 @@ impl Coding {
         }
     }
 
+    /// This coding, changed where it cannot hold `motion`: joints whose exponential maps leave half a turn become Euler angles, and positions beyond
+    /// the range get coarser steps.
+    pub fn widened_for(&self, motion: &Motion) -> Coding {
+        let held =
+            |(turning, exponential): (&Turning, &bool)| *exponential && turning.allows(motion, &turning.exponentials(motion));
+        Coding {
+            length_exponent: self.length_exponent.max(raw::clip_length_exponent(&motion.rig, &motion.values)),
+            exponentials: turning(&motion.rig).iter().zip(&self.exponentials).map(held).collect(),
+        }
+    }
+
     /// `motion` with exponential maps instead of Euler angles at the joints that are coded so.
     pub fn apply(&self, motion: &Motion) -> Motion {
         let mut out = motion.clone();
@@ -138,15 +149,12 @@ fn costs_of(motion: &Motion, bound: &PoseBound) -> Vec<Costs> {
     // Longer than the clip, it finds no bends.
     let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).clamp(1, motion.frames.max(1));
     let of = |turning: &Turning| {
-        let kinds = &motion.rig.joints[turning.joint].kinds;
         let scale = 1f64.to_radians() * reach[turning.joint] / (0.5 * bound_cm);
         let exponential = turning.exponentials(motion);
-        let axes = turning.slots.iter().filter_map(|&slot| kinds[slot].axis());
-        let distinct = axes.fold(0, |seen, axis| seen | 1 << axis) == 7;
         Costs {
             euler: turning.slots.iter().map(|&slot| roughness(&motion.values[turning.first + slot], stride, scale)).sum(),
             exponential: exponential.iter().map(|values| roughness(values, stride, scale)).sum(),
-            possible: distinct && exponential.iter().flatten().all(|x| x.abs() < LARGEST_DEGREES),
+            possible: turning.allows(motion, &exponential),
         }
     };
     turning(&motion.rig).iter().map(of).collect()
@@ -176,6 +184,14 @@ fn turning(rig: &Rig) -> Vec<Turning> {
 }
 
 impl Turning {
+    /// Whether a clip can hold these exponential maps of the joint: it turns about three axes, by less than half a turn.
+    fn allows(&self, motion: &Motion, exponential: &[Vec<f64>; 3]) -> bool {
+        let kinds = &motion.rig.joints[self.joint].kinds;
+        let axes = self.slots.iter().filter_map(|&slot| kinds[slot].axis());
+        let distinct = axes.fold(0, |seen, axis| seen | 1 << axis) == 7;
+        distinct && exponential.iter().flatten().all(|x| x.abs() < LARGEST_DEGREES)
+    }
+
     /// The joint's rotation at every frame as a quaternion w, x, y, z; of the two that turn alike, the one nearer to that of the frame before.
     fn quaternions(&self, motion: &Motion) -> [Vec<f64>; 4] {
         let joint = &motion.rig.joints[self.joint];

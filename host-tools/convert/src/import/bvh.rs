@@ -22,12 +22,7 @@ pub fn begins(head: &[u8]) -> bool {
 pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let bytes = options.read(path)?;
     let mut words = Words::new(path, &bytes);
-    let mut notes = Vec::new();
-    words.expect("HIERARCHY", "at the start of a BVH file")?;
-    let mut rig = hierarchy(&mut words)?;
-    notes.extend(repeated_names(&rig));
-    notes.extend(repeated_channels(&rig));
-    notes.extend(ends::complete(&mut rig.joints));
+    let (rig, mut notes) = figure(&mut words)?;
     let header = header(&mut words, options)?;
     let values = rows(&mut words, &header, rig.channels(), &mut notes)?;
     let keys = vec![None; values.len()];
@@ -42,6 +37,15 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
         origin: Default::default(),
     };
     Ok(Source::plain(motion, notes))
+}
+
+/// Reads the figure, and what is odd about it.
+pub(super) fn figure(words: &mut Words) -> Result<(Rig, Vec<Note>)> {
+    words.expect("HIERARCHY", "at the start of a BVH file")?;
+    let mut rig = hierarchy(words)?;
+    let mut notes: Vec<Note> = repeated_names(&rig).into_iter().chain(repeated_channels(&rig)).collect();
+    notes.extend(ends::complete(&mut rig.joints));
+    Ok((rig, notes))
 }
 
 /// A joint whose closing brace is still to come.

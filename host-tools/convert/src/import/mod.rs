@@ -7,6 +7,7 @@ pub mod animations;
 pub mod arrays;
 mod asf;
 mod bvh;
+mod bvh_stream;
 mod ends;
 mod expression;
 mod fap;
@@ -48,9 +49,10 @@ mod zip;
 mod zip;
 
 use crate::error::{Error, Setting, require};
-use crate::motion::{Motion, Origin, Up};
+use crate::motion::{Event, Motion, Origin, Rig, Up};
 use crate::note::{Note, NoteKind};
 use anyhow::{Context, Result};
+pub use bvh_stream::{BvhStream, Head};
 pub use files::{Disk, Files, InMemory, read as read_file, read_from};
 pub use format::{FORMATS, Format};
 #[cfg(feature = "gltf")]
@@ -128,7 +130,7 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
         motion.origin.bytes = request.bytes_read();
         return Ok(Imported { motion, notes });
     }
-    notes.extend(replaced(&motion));
+    notes.extend(replaced(&motion.rig, &motion.events));
     let channels = motion.rig.channels();
     require!(
         channels <= MAX_CHANNELS,
@@ -175,10 +177,9 @@ fn check_settings(format: &Format, request: &Request) -> Result<()> {
 }
 
 /// A warning about names with letters that the file has not as UTF-8 text.
-fn replaced(motion: &Motion) -> Option<Note> {
-    let joints = motion.rig.joints.iter().map(|joint| &joint.name);
-    let names =
-        joints.chain(motion.rig.scalars.iter().map(|scalar| &scalar.name)).chain(motion.events.iter().map(|event| &event.name));
+fn replaced(rig: &Rig, events: &[Event]) -> Option<Note> {
+    let joints = rig.joints.iter().map(|joint| &joint.name);
+    let names = joints.chain(rig.scalars.iter().map(|scalar| &scalar.name)).chain(events.iter().map(|event| &event.name));
     let odd: Vec<String> =
         names.filter(|name| name.contains(char::REPLACEMENT_CHARACTER)).map(|name| text::quoted(name)).collect();
     let first = odd.first()?;

@@ -37,6 +37,16 @@ impl<'a> Words<'a> {
         anyhow!("{}:{line}: {message}", self.file)
     }
 
+    /// Whether the last look for a word met the end: behind a word that was found, its line end is left.
+    pub fn is_at_end(&self) -> bool {
+        self.rest().is_empty()
+    }
+
+    /// What is left behind the word read last.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
     /// Any line end counts one: LF, CR LF, or CR alone.
     fn skip_space(&mut self) {
         while let Some(&byte) = self.bytes.get(self.at) {

@@ -12,12 +12,34 @@ use pantin_link::{ChannelKind, Head, MAX_PACE, pace};
 use pantin_link::{Message, Refresh, units};
 use std::collections::VecDeque;
 
-/// Index of the longest segment's length: 8 frames.
-const LONGEST: usize = 6;
-/// A segment that begins at a frame is known this many frames later.
-const LOOK: u32 = LENGTHS[LONGEST] as u32 + 1;
-/// Frames that share packets.
-const TOGETHER: u32 = 2;
+/// A line that is this many frames behind, or as many as packets are sent ahead, carries no more until it has caught up.
+const MOST_BEHIND: u32 = 6;
+
+/// How long frames wait for others before they are sent: less delay takes more of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LiveTiming {
+    /// Index of the longest segment's length.
+    longest: usize,
+    /// Frames that share packets.
+    together: u32,
+}
+
+impl LiveTiming {
+    /// Segments of up to 8 frames, and packets of two: a face of 60 weights on a slow line.
+    pub const FACE: LiveTiming = LiveTiming { longest: 6, together: 2 };
+    /// Segments of up to 2 frames, and packets of one: a body that is to be shown soon.
+    pub const BODY: LiveTiming = LiveTiming { longest: 1, together: 1 };
+
+    /// A segment that begins at a frame is known this many frames later.
+    fn look(self) -> u32 {
+        u32::from(LENGTHS[self.longest]) + 1
+    }
+
+    /// Frames from when one is made until it is shown, but for the time that the line takes.
+    pub fn delay(self, line: &LineSettings) -> u32 {
+        self.look() + self.together + line.ahead
+    }
+}
 
 /// A channel that is made while it is sent.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +48,8 @@ pub struct LiveChannel {
     pub bound: i32,
     /// How far it may go, from one end to the other, in raw units.
     pub way: u32,
+    /// Whether values wrap as angles do: the way from one to the next is the short one around.
+    pub wraps: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -33,6 +57,10 @@ struct ChannelEncoder {
     channel: u16,
     step: u8,
     bound: i64,
+    wraps: bool,
+    longest: usize,
+    /// The frames after which its second refresh comes: refreshes of all channels at one frame would hold up the line.
+    spread: u32,
     state: [i32; 4],
     due: u32,
     /// The frame by which a refresh must come.
@@ -44,6 +72,7 @@ struct ChannelEncoder {
 pub struct Live<'s> {
     schedule: Schedule<'s>,
     line: LineSettings,
+    timing: LiveTiming,
     begin: u32,
     channels: Vec<ChannelEncoder>,
     /// Frames from the one on that is coded next.
@@ -69,40 +98,43 @@ impl Source {
 }
 
 impl<'s> Live<'s> {
-    /// Frames from when one is made until it is shown, but for the time that the line takes.
-    pub fn delay(line: &LineSettings) -> u32 {
-        LOOK + TOGETHER + line.ahead
-    }
-
-    pub(super) fn new(source: &'s Source, head: Head, line: LineSettings, making: &[LiveChannel], sequence: u8) -> Self {
-        let mut channels = vec![];
+    pub(super) fn new(
+        source: &'s Source,
+        head: Head,
+        (line, timing): (LineSettings, LiveTiming),
+        making: &[LiveChannel],
+        sequence: u8,
+    ) -> Self {
+        let (mut channels, making_count) = (vec![], making.len() as u32);
         for (channel, (start, making)) in source.starts.iter().zip(making).enumerate() {
             if let &ChannelKind::Moving { step, .. } = start {
                 let (channel, bound) = (channel as u16, i64::from(making.bound));
-                channels.push(ChannelEncoder { channel, step, bound, state: [0; 4], due: 0, by: 0 });
+                let (wraps, longest) = (making.wraps, timing.longest);
+                let spread = line.cycle * (u32::from(channel) + 1) / making_count.max(1);
+                channels.push(ChannelEncoder { channel, step, bound, wraps, longest, spread, state: [0; 4], due: 0, by: 0 });
             }
         }
-        let start = -f64::from(Self::delay(&line)) * source.frame_seconds();
+        let start = -f64::from(timing.delay(&line)) * source.frame_seconds();
         let schedule = Schedule::new(source, head, line, Some(0), sequence, start);
         let (frames, begin) = (VecDeque::new(), head.begin);
-        Live { schedule, line, begin, channels, frames, next: 0, told: vec![], omitted_messages: 0 }
+        Live { schedule, line, timing, begin, channels, frames, next: 0, told: vec![], omitted_messages: 0 }
     }
 
     /// Takes the next frame, and hands on what is to leave now.
     pub fn push(&mut self, pose: &[i32]) -> Vec<TimedPacket> {
         self.frames.push_back(pose.to_vec());
-        if self.frames.len() as u32 > LOOK {
+        if self.frames.len() as u32 > self.timing.look() {
             self.code();
             self.frames.pop_front();
             self.next += 1;
         }
         let made = self.next + self.frames.len() as u32;
-        let now = (f64::from(made) - f64::from(Self::delay(&self.line))) * self.schedule.frame_seconds();
+        let now = (f64::from(made) - f64::from(self.timing.delay(&self.line))) * self.schedule.frame_seconds();
         let behind = self.schedule.idle_until(now);
-        if self.next > 0 && self.next.is_multiple_of(TOGETHER) {
+        if self.next > 0 && self.next.is_multiple_of(self.timing.together) {
             let told = std::mem::take(&mut self.told);
             // Receivers notice, and wait for the next refresh.
-            if behind > f64::from(self.line.ahead) * self.schedule.frame_seconds() {
+            if behind > f64::from(self.line.ahead.max(MOST_BEHIND)) * self.schedule.frame_seconds() {
                 self.omitted_messages += told.len() as u32;
             } else {
                 self.schedule.add(pack(&told, self.begin));
@@ -127,7 +159,7 @@ impl<'s> Live<'s> {
             let goal = |ahead: usize| {
                 self.frames.get(ahead).and_then(|pose| pose.get(usize::from(coding.channel))).copied().unwrap_or(0)
             };
-            let goals: Vec<i32> = (0..=LOOK as usize).map(goal).collect();
+            let goals: Vec<i32> = (0..=self.timing.look() as usize).map(goal).collect();
             if coding.due == self.next {
                 let message = coding.choose(&goals, self.next, self.line.cycle);
                 coding.state = message.apply(coding.state, coding.step);
@@ -143,15 +175,15 @@ impl<'s> Live<'s> {
 impl ChannelEncoder {
     /// The longest segment from here on that stays within the bound; `goals` are this frame's value and those after it.
     fn choose(&mut self, goals: &[i32], frame: u32, cycle: u32) -> Message {
-        let refresh = (frame == 0 || frame + u32::from(LENGTHS[LONGEST]) > self.by).then(|| {
-            self.by = frame + cycle;
+        let refresh = (frame == 0 || frame + u32::from(LENGTHS[self.longest]) > self.by).then(|| {
+            self.by = frame + if frame == 0 { self.spread } else { cycle };
             let [p, v] = if frame == 0 { [goals[0], goals[1].wrapping_sub(goals[0])] } else { [self.state[0], self.state[1]] };
             let unit = units(self.step);
             let rounded = |value: i32, unit: i32| (i64::from(value) + i64::from(unit / 2)).div_euclid(i64::from(unit)) as i32;
             Refresh { p: rounded(p, unit[0]), v: rounded(v, unit[1]), w: 0 }
         });
         let from = Message { mode: 0, run: 1, w: 0, k: 0, refresh }.apply(self.state, self.step);
-        let fits = (1..=LONGEST)
+        let fits = (1..=self.longest)
             .rev()
             .find_map(|index| self.segment(index, from, goals).filter(|(_, off)| *off <= self.bound).map(|(w, _)| (index, w)));
         let (index, w) = fits.unwrap_or_else(|| (0, self.segment(0, from, goals).map_or(0, |(w, _)| w)));
@@ -163,7 +195,11 @@ impl ChannelEncoder {
         let unit = i64::from(segment::step(index as u8, self.step));
         let last = usize::from(LENGTHS[index]) + 1;
         // What is left at frame j, and what a step of acceleration does there.
-        let rest = |j: usize| i64::from(goals[j]) - i64::from(p) - j as i64 * i64::from(v);
+        let rest = |j: usize| {
+            let rest = i64::from(goals[j]) - i64::from(p) - j as i64 * i64::from(v);
+            // An angle's way is the short one around.
+            if self.wraps { i64::from(rest as i32) } else { rest }
+        };
         let by = |j: usize| (j * (j - 1) / 2) as i64 * unit;
         let product: f64 = (2..=last).map(|j| rest(j) as f64 * by(j) as f64).sum();
         let square: f64 = (2..=last).map(|j| by(j) as f64 * by(j) as f64).sum();

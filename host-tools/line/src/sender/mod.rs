@@ -12,7 +12,7 @@ mod tests;
 mod train;
 mod writer;
 
-pub use live::{Live, LiveChannel};
+pub use live::{Live, LiveChannel, LiveTiming};
 pub use schedule::{ByteCounts, LineSettings, Schedule, TimedPacket};
 pub use source::{Source, SourceError};
 
@@ -45,9 +45,9 @@ impl Sender {
     }
 
     /// Motion that is made while it is sent: `making` is what `source` was made with. Nothing comes after it.
-    pub fn live<'s>(self, source: &'s Source, line: LineSettings, making: &[LiveChannel]) -> Live<'s> {
+    pub fn live<'s>(self, source: &'s Source, line: LineSettings, timing: LiveTiming, making: &[LiveChannel]) -> Live<'s> {
         let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
-        Live::new(source, head, line, making, self.sequence)
+        Live::new(source, head, (line, timing), making, self.sequence)
     }
 
     /// Goes on after a clip.

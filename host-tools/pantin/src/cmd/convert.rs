@@ -4,7 +4,7 @@ use super::channel_bound::{ChannelBound, above_zero, degrees};
 use super::edits::Edits;
 use super::encoder::Rotations;
 use super::shard::{self, Shard};
-use super::{bank, batch, convert_bank, convert_list, default_output, same_form, up_axis};
+use super::{bank, batch, convert_bank, convert_list, convert_stream, default_output, same_form, up_axis};
 use crate::memory::{self, limit};
 use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
 use crate::words;
@@ -53,6 +53,7 @@ use std::sync::OnceLock;
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
   pantin convert captures -o clips --shard 2/8        part 2 of 8, on one of 8 machines
   pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips
+  capture-program | pantin convert - --stream -o take
   pantin convert captures -o moves.ptb
   pantin convert moves.list -o moves.ptb --same-form")]
 pub struct Arguments {
@@ -155,12 +156,26 @@ pub struct Arguments {
     /// Convert only the I-th of N parts of the files, I from 1, so that several machines share the work of one command
     #[arg(long, value_name = "I/N", value_parser = shard::parse, conflicts_with_all = ["list", "find_loop", "same_form"])]
     pub(super) shard: Option<Shard>,
+    /// Convert BVH from standard input or a pipe while it is captured, into a folder of clips: --output. Each clip is written as soon as its frames have come;
+    /// the next one begins with the frame behind its last. The clips share one rig, figure.rig in the folder, and the number in a clip's name is its
+    /// first frame. `Frames: 0` means that the number is not known
+    #[arg(long, requires = "output", conflicts_with_all = ["more", "list", "find_loop", "dry_run", "same_form", "rig_out", "jobs", "shard", "animation", "skeleton", "keys", "fps", "max_scalar_error", "max_channel_error", "max_accel_error", "exact"])]
+    stream: bool,
+    /// With --stream: how long a frame waits, at most, for later frames of its clip before the clip is encoded. A shorter delay costs bytes, because each clip
+    /// states the start of every channel again
+    #[arg(long, value_name = "SECONDS", default_value_t = 4.0, requires = "stream", value_parser = delay)]
+    pub(super) delay: f64,
     /// Whether this is one file of a folder, whose messages the folder's table replaces.
     #[arg(skip)]
     silent: bool,
     /// Whether the output's name is a default: a file that is there is kept, unless it is this clip, up to date.
     #[arg(skip)]
     pub(super) keeps_existing: bool,
+}
+
+/// Seconds, as `4`, `0.5` or `4s`.
+fn delay(text: &str) -> Result<f64, String> {
+    above_zero(text.trim().strip_suffix('s').unwrap_or(text))
 }
 
 impl Arguments {
@@ -250,6 +265,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     if arguments.find_loop {
         return find_loop(arguments);
+    }
+    if arguments.stream {
+        return convert_stream::run(arguments);
     }
     if arguments.output.as_deref().is_some_and(bank::is_bank_name) {
         ensure!(arguments.shard.is_none(), "--shard makes a part of the clips, and a bank holds all of them");

@@ -72,7 +72,8 @@ impl Mapping {
             part > 0.0 && part < 1.0,
             "--max-scalar-error {max_scalar_error}: expected more than 0 and less than 100 percent"
         );
-        let channel = |place: &Place| LiveChannel { bound: place.raw(part).0.max(1), way: place.raw(1.0).0.max(1) as u32 };
+        let channel =
+            |place: &Place| LiveChannel { bound: place.raw(part).0.max(1), way: place.raw(1.0).0.max(1) as u32, wraps: false };
         Ok(self.places.iter().map(channel).collect())
     }
 

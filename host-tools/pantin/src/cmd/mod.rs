@@ -7,6 +7,7 @@ mod channel_bound;
 pub mod convert;
 mod convert_bank;
 mod convert_list;
+mod convert_stream;
 mod edits;
 mod encoder;
 pub mod expand;
@@ -22,6 +23,7 @@ pub mod serve;
 mod shard;
 pub mod steer;
 pub mod stream;
+mod stream_body;
 mod stream_live;
 pub mod update;
 

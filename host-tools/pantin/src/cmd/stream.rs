@@ -1,5 +1,6 @@
 //! `pantin stream`: clips over a line, while they play.
 
+use super::channel_bound::degrees;
 use crate::board_clip::as_segments;
 use crate::cmd::{Files, rig_is_needed};
 use crate::memory;
@@ -29,18 +30,22 @@ const MOST_SECONDS: f64 = 60.0;
 /// one cycle after any loss; `--cycle` and `--refresh` limit how short a cycle may be.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Clips, sent one after the other; with --live, a clip of the face that the receiver has
+    /// Clips, sent one after the other; with --live, a clip of the face or the figure that the receiver has
     #[arg(required = true)]
     pub(super) clips: Vec<PathBuf>,
     /// The line: serial:DEVICE, tcp:HOST:PORT or udp:HOST:PORT, followed by @BAUD if it is not 38400 (10 bits per byte, for all of them)
     #[arg(long, value_name = "LINE")]
     pub(super) to: Address,
-    /// Send a face while it is recorded: udp:PORT receives datagrams of Live Link Face, - reads lines of its CSV from stdin, one per frame of the clip
+    /// Send motion while it is captured. A face: udp:PORT receives datagrams of Live Link Face, - reads lines of its CSV from stdin, one per frame of the
+    /// clip. A body: vmc:PORT receives VMC over OSC from a VRM program (usually port 39539), bvh:- reads BVH from stdin, a row per frame of the clip
     #[arg(long, value_name = "FROM", conflicts_with_all = ["looped", "refresh", "cycle", "ahead"])]
     live: Option<String>,
-    /// Largest error of --live, in percent of full scale
+    /// Largest error of --live for channels that move no joint, in percent of full scale
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0, requires = "live")]
     pub(super) max_scalar_error: f64,
+    /// Largest error of a body's angles with --live, in degrees. Places of joints keep half a centimetre
+    #[arg(long, value_name = "DEGREES", default_value_t = 1.0, requires = "live", value_parser = degrees)]
+    pub(super) max_turn_error: f64,
     /// The rig of clips without one (`pantin convert --rig-out`)
     #[arg(long)]
     pub(super) rig: Option<PathBuf>,

@@ -1,11 +1,11 @@
-//! `pantin stream --live`: a face over a line while it is recorded.
+//! `pantin stream --live`: a face over a line while it is recorded. Bodies are `stream_body`'s.
 
 use super::live_mapping::Mapping;
 use super::stream::{Arguments, closing, sender};
 use crate::cmd::Files;
 use crate::output::note;
 use anyhow::{Context, Result, ensure};
-use pantin_line::sender::{LineSettings, Live, Source};
+use pantin_line::sender::{LineSettings, Live, LiveTiming, Source};
 use pantin_line::stream::address::Output;
 use pantin_line::stream::live::Feed;
 use pantin_line::stream::pace;
@@ -23,7 +23,12 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let [path] = &arguments.clips[..] else { anyhow::bail!("--live: expected one clip, of the face that the other end has") };
     let files = Files::read(path, arguments.rig.as_deref())?;
     let clip = files.open_alone().with_context(|| path.display().to_string())?;
-    ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
+    if super::stream_body::is_body(from) {
+        ensure!(clip.rig().joint_count() > 0, "{}: a clip without joints; --live {from} sends bodies", path.display());
+        return super::stream_body::run(arguments, &clip, from, stop);
+    }
+    let expected = "--live vmc:PORT and --live bvh:- send bodies";
+    ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; {expected}", path.display());
     let feed = Feed::open(from, stop).with_context(|| format!("--live {from}"))?;
     let mapping = Mapping::new(&clip.rig(), feed.names());
     ensure!(mapping.mapped() > 0, "{}: none of its channels is in what --live brings", path.display());
@@ -32,8 +37,8 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let source = Source::live(clip.form(), clip.frame_time_ns(), &channels);
     let line = line_settings(arguments, channels.len(), &source)?;
     note_delays(mapping.mapped(), &line, &source);
-    let live = sender().live(&source, line, &channels);
-    let mut session = Session { feed, mapping, live, line: arguments.to.open()?, delay_frames: Live::delay(&line) };
+    let live = sender().live(&source, line, LiveTiming::FACE, &channels);
+    let mut session = Session { feed, mapping, live, line: arguments.to.open()?, delay_frames: LiveTiming::FACE.delay(&line) };
     let start = Instant::now();
     session.send(from, start, Duration::from_nanos(u64::from(clip.frame_time_ns())), stop)?;
     note!("{}", closing(session.live.bytes(), start.elapsed().as_secs_f64()));
@@ -59,7 +64,7 @@ fn note_delays(channels: usize, line: &LineSettings, source: &Source) {
     let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
     note!(
         "live: {channels} channels; shown {:.0} ms after they came; all of them refreshed within {:.0} ms",
-        milliseconds(Live::delay(line)),
+        milliseconds(LiveTiming::FACE.delay(line)),
         milliseconds(line.cycle)
     );
 }

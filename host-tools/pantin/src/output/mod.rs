@@ -26,7 +26,7 @@ pub use foreign::{Wanted, refuse_foreign};
 pub use place::{Place, check, file_id};
 pub use progress::{Piece, Pieces, progress};
 pub use report::{fail, finish, is_json, is_quiet, is_verbose, report, set_reporting, take_stdout};
-pub use staged::{Staged, check_size, commit, set_most_bytes};
+pub use staged::{Staged, check_size, commit, end_on_signals, set_most_bytes};
 pub use terminal::{clean, is_hostile, print_detail, print_error, print_error_text, print_line, print_note, reader_gone};
 pub(crate) use terminal::{detail, note, noticed, outln};
 

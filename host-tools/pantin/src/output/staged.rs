@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use tempfile::{Builder, TempPath};
 
@@ -247,6 +247,26 @@ impl Drop for Registered {
     }
 }
 
+/// Whether SIGINT and SIGTERM only set a flag.
+#[cfg(unix)]
+static KEEPS_RUNNING: AtomicBool = AtomicBool::new(false);
+
+/// A flag that SIGINT and SIGTERM set, for a command that then ends by itself and keeps what it has written. A second signal ends the program at once. To be
+/// called before the first output.
+pub fn end_on_signals() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    {
+        KEEPS_RUNNING.store(true, Ordering::Relaxed);
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+            // In this order, so that the first one finds the flag unset.
+            signal_hook::flag::register_conditional_default(signal, stop.clone())?;
+            signal_hook::flag::register(signal, stop.clone())?;
+        }
+    }
+    Ok(stop)
+}
+
 /// Signals that end the program remove temporary files first, and folders that were made for nothing. A signal that the program was started to ignore stays ignored.
 pub(super) fn remove_on_signals() {
     #[cfg(unix)]
@@ -258,7 +278,8 @@ pub(super) fn remove_on_signals() {
             let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
             let ignored = ignored_signals();
             let ending = [SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2];
-            let signals = ending.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+            let left_out = |signal: &i32| KEEPS_RUNNING.load(Ordering::Relaxed) && [SIGINT, SIGTERM].contains(signal);
+            let signals = ending.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0 && !left_out(signal));
             let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) else { return };
             std::thread::spawn(move || {
                 for signal in signals.forever() {

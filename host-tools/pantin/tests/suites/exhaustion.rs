@@ -298,7 +298,7 @@ fn columns_that_a_live_line_leaves_out_are_named() {
 
 /// The most memory that a command had at a time, in bytes, and whether it succeeded; `None` if it refused.
 #[cfg(target_os = "linux")]
-fn peak(folder: &Folder, arguments: &[&str]) -> Option<u64> {
+pub fn peak(folder: &Folder, arguments: &[&str]) -> Option<u64> {
     let mut command = folder.command(arguments);
     command.env("RAYON_NUM_THREADS", "2").stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
     let mut child = command.spawn().unwrap();

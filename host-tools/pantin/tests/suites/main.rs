@@ -56,6 +56,7 @@ mod procedural_input;
 mod processor_time;
 mod rates_and_loops;
 mod real;
+mod recording;
 mod render_command;
 mod same_form;
 mod scalars_command;

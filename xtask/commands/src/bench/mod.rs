@@ -22,6 +22,7 @@ mod paper;
 mod paper_keys;
 mod peers;
 mod plot;
+mod recording;
 mod reference;
 mod short;
 mod size;

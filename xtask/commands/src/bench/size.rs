@@ -10,7 +10,7 @@ use super::error::{self, Distance};
 use super::peers::{self, Bytes};
 use super::reference::{self, Reference};
 use super::table::{geometric_mean, number};
-use super::{Goal, Setting, plot, short, table, tool};
+use super::{Goal, Setting, plot, recording, short, table, tool};
 use xtask::steps::say;
 
 /// Bounds in cm, and the goals at each: of the ideal coder, of ACL (geometric means), of the best working coder (the worst
@@ -64,6 +64,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     goals.push(Goal::at_most("bounds broken, or clips refused", (broken + failed) as f64, 0.0, 0, ""));
     goals.extend(at_means(setting, &clips)?);
     goals.extend(short::run(setting, &clips)?);
+    goals.extend(recording::run(setting, &clips)?);
     Ok(goals)
 }
 

@@ -93,6 +93,22 @@ impl Tool {
         self.convert(motion, name, options)
     }
 
+    /// Converts a motion as if it were captured now, with a delay in seconds: the bytes of its clips without their rig, and how many clips there are.
+    pub fn record(&self, motion: &Path, delay: f64, options: &[String]) -> Result<(f64, usize)> {
+        let folder = tempfile::tempdir()?;
+        let mut command = Command::new(&self.program);
+        command.arg("convert").arg(motion).args(["-q", "--stream", "--delay", &delay.to_string(), "-o"]);
+        self.run(command.arg(folder.path()).args(options))?;
+        let (mut bytes, mut clips) = (0, 0);
+        for entry in std::fs::read_dir(folder.path())? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == "ptn") {
+                (bytes, clips) = (bytes + path.metadata()?.len(), clips + 1);
+            }
+        }
+        Ok((bytes as f64, clips))
+    }
+
     /// Turns a clip back into a BVH file.
     pub fn expand(&self, clip: &Path, bvh: &Path) -> Result<()> {
         self.run(Command::new(&self.program).arg("expand").arg(clip).arg("-o").arg(bvh)).map(drop)
