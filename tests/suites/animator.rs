@@ -111,7 +111,7 @@ fn our_character_is_that_of_the_crate_at_every_rate() {
     compare(&folder, "random inputs", &[&character], &reference::inputs(&table, UPDATES, &mut Sequence(1)));
 }
 
-/// Banks with random tables, some of which their rules forbid, and damaged banks: both refuse them, or play alike.
+/// Banks with random tables, also such as the rules forbid, and damaged banks: both refuse them, or play alike.
 #[test]
 fn other_machines_are_those_of_the_crate() {
     if setup::host_only("the animator in JavaScript") {

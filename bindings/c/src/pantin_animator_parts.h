@@ -47,7 +47,7 @@ uint16_t pantin_animator_part(const pantin_track *track);
 /* The root of a square, rounded down. */
 uint64_t pantin_animator_root(uint64_t square);
 
-/* Which component each channel of a map (`count` 3) or a quaternion (4) holds: 15 bytes, of which one of 4 and more is none. */
+/* Which component each channel of a map (`count` 3) or a quaternion (4) holds: 15 bytes; one of 4 and more stands for none. */
 void pantin_animator_places(const pantin_joint_ref *joint, uint8_t count, uint8_t *places);
 
 /* The exponential map of a unit quaternion. */

@@ -126,7 +126,7 @@ static void sin_cos(int32_t angle, int32_t *sine, int32_t *cosine) {
     *cosine = r[1][1];
 }
 
-/* The angles about three axes, of which the rotation is the turns one after the other. */
+/* The angles of three turns about axes, one after the other, that make the rotation. */
 static void angles_of(int32_t (*r)[3], const uint8_t *axes, int32_t *angles) {
     uint8_t i = axes[0], j = axes[1], k = axes[2], n;
     int32_t sign = (i + 1) % 3 == j ? 1 : -1, v[3], sine, cosine, length, images[2];

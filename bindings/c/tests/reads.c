@@ -10,7 +10,7 @@
 
 enum { CHANNELS = 160, PAGE = 128, UPDATES = 900, STEP_US = 33333, LAYERS = 4 };
 
-/* A character with its memory, and a file of which one read fails. */
+/* A character with its memory, and a file with one read that fails. */
 typedef struct {
     pantin_channel moving[CHANNELS], second_moving[CHANNELS], layer_moving[LAYERS][CHANNELS];
     int32_t values[CHANNELS], pose[CHANNELS], second_values[CHANNELS], layer_values[LAYERS][CHANNELS], sampled[LAYERS][CHANNELS];

@@ -11,7 +11,7 @@
 
 enum { CHANNELS = 128, BONES = 64, JOINTS = 64, PAGE = 32 };
 
-/* A figure with its memory, and a file of which one read fails. */
+/* A figure with its memory, and a file with one read that fails. */
 typedef struct {
     pantin_channel moving[CHANNELS];
     int32_t pose[CHANNELS];

@@ -76,7 +76,7 @@ const PICO_I2C: Wiring = Wiring {
     part: I2C_PART,
     bus: Some(Bus::I2c),
     wires: &[["SDA", "GP4"], ["SCL", "GP5"]],
-    source: [PICO_SOURCE, "let (sda, scl) = (pins.{}.reconfigure(), pins.{}.reconfigure());"],
+    source: [PICO_SOURCE, "let (sda, scl) = (pins.{}.into_pull_up_input(), pins.{}.into_pull_up_input());"],
 };
 const PICO_SPI: Wiring = Wiring {
     part: SPI_PART,
@@ -154,7 +154,7 @@ pub const BOARDS: [Board; 9] = [
                 part: I2C_PART,
                 bus: Some(Bus::I2c),
                 wires: &[["SCL", "PB6"], ["SDA", "PB7"]],
-                source: ["src/board.rs", "let pins = ({}.internal_pull_up(true), {}.internal_pull_up(true));"],
+                source: ["src/board.rs", "crate::i2c::new(parts.I2C1, {}, {}, &mut clocks"],
             },
             Wiring {
                 part: SPI_PART,
@@ -260,7 +260,7 @@ pub const BOARDS: [Board; 9] = [
                 part: I2C_PART,
                 bus: Some(Bus::I2c),
                 wires: &[["SCL", "PB8"], ["SDA", "PB9"]],
-                source: ["src/board.rs", "parts.I2C1.i2c(({}.internal_pull_up(true), {}.internal_pull_up(true))"],
+                source: ["src/board.rs", "crate::i2c::new(parts.I2C1, {}, {}, &mut clocks"],
             },
             Wiring {
                 part: SPI_PART,

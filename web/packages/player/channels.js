@@ -1,5 +1,5 @@
 // Channels of a pose in groups that are one rotation, one place or one scalar, and rotations in them: the firmware's animator (pantin-animator) in JavaScript, with the
-// same integers bit for bit. Its modules groups.rs, math.rs and layer.rs state each step. Integers of 64 bits are BigInts, of which a picture takes a few.
+// same integers bit for bit. Its modules groups.rs, math.rs and layer.rs state each step. Integers of 64 bits are BigInts; a picture takes a few of them.
 import { PART, Q, abs, atan2, cosine, dot, eulerOf, floor, length, matrixOf, max, normalize, orderOf, set, sine, turn, turnAbout, turnByMap, turnTo, unturned } from "../decoder/turning.js";
 
 export const big = BigInt;

@@ -1,7 +1,7 @@
 // What <pantin-player> loads for its attribute `character-look`: reads a character of the solid figure (docs/LOOKS.md), as text or compiled.
 
 const MATERIALS = "shirt trousers skin hair face nose eye left right right-end edge stage floor shadow".split(" ");
-// Materials of the body; those after them have these colors in the default character, in place of which a page has its own.
+// Materials of the body; those after them have these colors in the default character, which a page replaces by its own.
 const OF_BODY = 7;
 const UNSTATED = ["ffa03c", "50beff", "50beff", "06080e", "242c40", "38445c", "0e121c"];
 const ANCHORS = ["head", "chest", "hips", "thighs"];

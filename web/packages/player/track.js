@@ -6,7 +6,7 @@ import { WHOLE, big, clamp, headingOf, nearest, rotated, turnOf, turnedBy, weigh
 
 // Speed 1.
 export const NORMAL = 65536;
-// Words of a moving channel's state in the decoder, of which the first is its value, and the place of its velocity.
+// Words of a moving channel's state in the decoder. The first is its value; V is the place of its velocity.
 export const STATE = 9;
 export const V = 1;
 // Laps of a loop in one update, at most.

@@ -4,9 +4,6 @@
 
 #[path = "../../blackpill/src/flash.rs"]
 mod flash;
-#[cfg(not(feature = "spi"))]
-#[path = "../../blackpill/src/i2c.rs"]
-mod i2c;
 #[path = "../../blackpill/src/panic.rs"]
 mod panic;
 #[cfg(feature = "spi")]
@@ -19,6 +16,9 @@ mod uart_rx;
 mod watchdog;
 
 mod board;
+#[cfg(not(feature = "spi"))]
+#[path = "../../blackpill/src/i2c.rs"]
+mod i2c;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 

@@ -20,7 +20,7 @@ pub const SILENT_SECONDS: f64 = 0.5;
 pub const HELD_SECONDS: f64 = 2.0;
 /// The figure returns to rest within this time, in seconds.
 pub const EASE_SECONDS: f64 = 1.0;
-/// Names and senders of which the log speaks, at most: an enemy may send any number.
+/// The most names and senders that get a line in the log: an enemy may send any number.
 const MOST_LOGGED: usize = 20;
 
 /// Where poses come from.
