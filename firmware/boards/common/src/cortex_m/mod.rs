@@ -2,6 +2,7 @@
 
 mod faults;
 mod guard;
+#[cfg(not(feature = "emulated"))]
 pub(crate) mod kept;
 mod systick;
 
