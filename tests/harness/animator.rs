@@ -176,6 +176,19 @@ fn mend_table(bytes: &mut [u8]) {
     hostile::fix::rig(&mut bytes[at..at + len]);
 }
 
+/// The clips among these files by their rig, and the rig's number with them.
+pub fn by_rig(files: &[Vec<u8>]) -> Vec<(u32, Vec<&[u8]>)> {
+    let mut groups: Vec<(u32, Vec<&[u8]>)> = vec![];
+    for bytes in files {
+        let Ok(clip) = Clip::new_checked(bytes) else { continue };
+        match groups.iter_mut().find(|(rig, _)| *rig == clip.rig().id()) {
+            Some((_, clips)) => clips.push(bytes),
+            None => groups.push((clip.rig().id(), vec![bytes])),
+        }
+    }
+    groups
+}
+
 /// A clip in another form: one bit of its head, which says how a joint is coded, is inverted, and its CRC is computed again.
 pub fn in_another_form(file: &[u8]) -> Option<Vec<u8>> {
     let clip = Clip::new_checked(file).ok()?;

@@ -58,14 +58,7 @@ fn transitions_are_those_of_the_crate() {
     files.extend(["walk.ptn", "run.ptn", "greet.ptn", "kneebend.ptn"].map(|name| std::fs::read(motion(name)).unwrap()));
     let others: Vec<Vec<u8>> = files.iter().filter_map(|bytes| reference::in_another_form(bytes)).collect();
     files.extend(others);
-    let mut groups: Vec<(u32, Vec<&[u8]>)> = vec![];
-    for bytes in &files {
-        let Ok(clip) = Clip::new_checked(bytes) else { continue };
-        match groups.iter_mut().find(|(rig, _)| *rig == clip.rig().id()) {
-            Some((_, clips)) => clips.push(bytes),
-            None => groups.push((clip.rig().id(), vec![bytes])),
-        }
-    }
+    let groups = reference::by_rig(&files);
     let mut instants = 0;
     for (rig, bytes) in &groups {
         let clips: Vec<Clip> = bytes.iter().filter_map(|bytes| Clip::new_checked(bytes).ok()).collect();

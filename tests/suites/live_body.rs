@@ -113,7 +113,7 @@ struct Session {
     bytes_a_second: f64,
 }
 
-/// Sends `frames` poses of a body over a line of 38,400 baud; `bring` gives the body what comes before each.
+/// Sends `frames` poses of a body over a line of 38,400 baud; `bring` gives the body the datagrams or rows before each.
 fn session(mut body: Body, frames: usize, mut bring: impl FnMut(&mut Body, usize)) -> Session {
     let bytes = std::fs::read(&CLIP.1).unwrap();
     let clip = Clip::new_checked(&bytes).unwrap();

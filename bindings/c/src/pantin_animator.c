@@ -1965,7 +1965,7 @@ static pantin_result make(pantin_character *c, uint32_t transition, uint32_t fra
 /* More than the index of any transition. */
 #define NONE_HAPPENS 256u
 
-/* Takes the first transition whose cause holds. Once there is more than one state in `been`, a transition that leads to one of them is left out. `made`
+/* Takes the first transition that may be taken now. Once there is more than one state in `been`, a transition that leads to one of them is left out. `made`
  * is 1 if there was one. */
 static pantin_result enter(pantin_character *c, const seen_inputs *inputs, uint64_t been, uint8_t *made) {
     uint64_t own = (uint64_t)1 << c->state, ns;

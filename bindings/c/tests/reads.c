@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "failing.h"
 #include "file.h"
 #include "pantin_feet.h"
 
@@ -27,29 +28,11 @@ typedef struct {
 } actor;
 
 static actor now, kept, other;
-static const uint8_t *bytes;
-static uint32_t length, reads, first_failing, last_failing;
 
 static void check(int held, const char *what, uint32_t update, uint32_t k) {
     if (held) return;
     printf("failed: %s, update %u, read %u\n", what, (unsigned)update, (unsigned)k);
     exit(1);
-}
-
-static int read_bytes(void *context, uint32_t position, uint8_t *into, uint16_t count) {
-    (void)context;
-    reads++;
-    memset(into, 0xee, count);
-    if (reads >= first_failing && reads <= last_failing) return 1;
-    memcpy(into, bytes + position, count);
-    return 0;
-}
-
-/* The next call's reads `from` to `to` fail; none for 0. */
-static void let_fail(uint32_t from, uint32_t to) {
-    reads = 0;
-    first_failing = from;
-    last_failing = to;
 }
 
 static void prepare(size_t moving_room) {

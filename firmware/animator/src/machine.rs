@@ -253,7 +253,7 @@ impl<'a> Machine<'a> {
         Ok(last)
     }
 
-    /// Takes the first transition whose cause holds. Once there is more than one state in `been`, a transition that leads to one of them is
+    /// Takes the first transition that may be taken now. Once there is more than one state in `been`, a transition that leads to one of them is
     /// left out. Of the events, those after the first `heard` count.
     fn enter<'b>(
         &mut self,

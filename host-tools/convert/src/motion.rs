@@ -241,6 +241,12 @@ pub struct Origin {
 }
 
 impl Motion {
+    /// A motion of `frames` values for each channel, without keys, loop or events.
+    pub(crate) fn sampled(rig: Rig, frame_time: f64, frames: usize, values: Vec<Vec<f64>>) -> Motion {
+        let keys = vec![None; values.len()];
+        Motion { rig, frame_time, frames, keys, values, looped: false, events: Vec::new(), origin: Default::default() }
+    }
+
     /// The motion without joints, scalars and their values, for an edit that adds those it keeps.
     pub fn without_figure(&self) -> Motion {
         Motion {

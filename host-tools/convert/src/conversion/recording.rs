@@ -177,16 +177,7 @@ impl Recording {
     fn coded(&mut self, frames: usize) -> Result<RecordedClip> {
         let values = self.stream.take(frames);
         let Some(head) = self.stream.head() else { return Err(Error::source("no header").into()) };
-        let mut motion = Motion {
-            rig: head.rig.clone(),
-            frame_time: head.frame_time,
-            frames,
-            keys: vec![None; values.len()],
-            values,
-            looped: false,
-            events: Vec::new(),
-            origin: Default::default(),
-        };
+        let mut motion = Motion::sampled(head.rig.clone(), head.frame_time, frames, values);
         unwrap_angles(&mut motion);
         let (mut notes, prepared) = match &self.settled {
             Some(settled) => {

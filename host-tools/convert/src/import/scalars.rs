@@ -17,16 +17,7 @@ pub fn motion(names: Vec<String>, scales: &[f64], values: Vec<Vec<f64>>, frame_t
     let scalars = names.into_iter().zip(scales).zip(&values).map(scalar).collect();
     let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
     let frames = values.first().map_or(0, Vec::len);
-    Motion {
-        rig,
-        frame_time,
-        frames,
-        keys: vec![None; values.len()],
-        values,
-        looped: false,
-        events: Vec::new(),
-        origin: Default::default(),
-    }
+    Motion::sampled(rig, frame_time, frames, values)
 }
 
 /// The greatest value, whatever its sign, but no less than any full scale may be.

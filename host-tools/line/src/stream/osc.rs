@@ -36,7 +36,7 @@ fn packet<'a>(bytes: &'a [u8], depth: u32, out: &mut Vec<Message<'a>>) -> Result
     match bytes.strip_prefix(b"#bundle\0") {
         Some(_) if depth == MOST_DEPTH => Err("bundles in bundles in bundles"),
         Some(rest) => {
-            // Its time: what comes is shown as soon as can be.
+            // Its time, which is not read: a pose is shown as soon as it has arrived.
             let mut rest = rest.get(8..).ok_or("a bundle without a time")?;
             while !rest.is_empty() {
                 let (len, after) = rest.split_first_chunk::<4>().ok_or("a bundle that is cut off")?;

@@ -119,7 +119,7 @@ fn send(
 }
 
 impl Feed {
-    /// Takes what comes until the time of the next frame. Returns whether more may come.
+    /// Takes poses until the time of the next frame. Returns whether the sender may send more.
     fn take(&mut self, body: &mut Body, until: Instant, stop: &AtomicBool) -> Result<bool> {
         match self {
             Feed::Datagrams(socket) => {

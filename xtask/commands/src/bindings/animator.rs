@@ -66,14 +66,7 @@ pub fn transitions(folder: &TempDir) -> Result<()> {
     files.extend(vectors::load(&vectors::keyed::folder())?.into_iter().map(|vector| vector.clip));
     let others: Vec<Vec<u8>> = files.iter().filter_map(|bytes| reference::in_another_form(bytes)).collect();
     files.extend(others);
-    let mut groups: Vec<(u32, Vec<&[u8]>)> = vec![];
-    for bytes in &files {
-        let Ok(clip) = Clip::new_checked(bytes) else { continue };
-        match groups.iter_mut().find(|(rig, _)| *rig == clip.rig().id()) {
-            Some((_, clips)) => clips.push(bytes),
-            None => groups.push((clip.rig().id(), vec![bytes])),
-        }
-    }
+    let groups = reference::by_rig(&files);
     let (programs, mut lines, mut forms) = (programs(folder)?, 0, 0);
     for (rig, bytes) in &groups {
         let clips: Vec<Clip> = bytes.iter().filter_map(|bytes| Clip::new_checked(bytes).ok()).collect();
