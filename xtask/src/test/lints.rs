@@ -44,7 +44,7 @@ pub fn libraries(steps: &Steps, libraries: &[Package]) {
     steps.run("host tests of the firmware's libraries", || Workspace::Firmware.captured(&format!("test{named} --no-fail-fast")));
 }
 
-/// Lints of boards and other images, each with the features that make another image.
+/// Lints of boards and other images, without and with the features that make another image.
 pub fn boards(steps: &Steps, boards: &[Package]) {
     for package in boards {
         let name = &package.name;
@@ -55,9 +55,11 @@ pub fn boards(steps: &Steps, boards: &[Package]) {
                 // The sizes of a board's images are compared: that builds them.
                 if package.is_board() { Ok(()) } else { on_board(&format!("build {build}"), "", target) }
             });
-            for feature in &package.features {
-                steps.run(&format!("lints of {name} with {feature} for {target}"), || {
-                    on_board(&format!("clippy {build} --features {feature}"), &lints(), target)
+            // Together: none of them excludes another.
+            let features = package.features.join(",");
+            if !features.is_empty() {
+                steps.run(&format!("lints of {name} with {features} for {target}"), || {
+                    on_board(&format!("clippy {build} --features {features}"), &lints(), target)
                 });
             }
         }
