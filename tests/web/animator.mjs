@@ -2,6 +2,7 @@
 //   node animator.mjs play SCRIPT CLIP...  : an animator that begins with the first clip
 //   node animator.mjs steer SCRIPT BANKS   : the state machines of banks, each behind its length as a u32
 import { readFileSync } from "node:fs";
+import { keys } from "../../web/packages/decoder/keys.js";
 import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/decoder/clip.js";
 import { animatorOf } from "../../web/packages/player/animator.js";
 import { bankOf } from "../../web/packages/player/bank.js";
@@ -34,7 +35,7 @@ function refuses(act) {
 
 function play() {
   const poseOf = (_, __, state, channels) => ({ state, channels });
-  const clips = files.map((file) => openRawClip(readFileSync(file), undefined, false, { poseOf }));
+  const clips = files.map((file) => openRawClip(readFileSync(file), undefined, false, { poseOf, keys }));
   const place = (kinds) => kinds.some((kind) => kind < 3);
   let animator;
   if (refuses(() => (animator = animatorOf(clips[0], Math.max(0, clips[0].rig.joints.findIndex(({ kinds }) => place(kinds))))))) return out.push("refused\n");
@@ -60,7 +61,7 @@ function steer(file) {
     const bank = bankOf(file, [fieldsOf, checked, openRawRig, openRawClip]);
     // The element plays the clips of such a bank.
     if (!bank.machine) throw new Error("pantin: no state machine");
-    character = opened(bank);
+    character = opened(bank, keys);
   };
   if (refuses(open)) return out.push("refused\n");
   const { animator } = character;

@@ -417,7 +417,7 @@ const playKeys = (clip, poseOf, payload, at, isPartial, keys) => {
   let frame = 0;
   let channel = 0;
   eachRest(clip, (_, rest) => (raw[channel++] = rest));
-  const { moving, show } = isPartial ? { moving: 0, show: () => {} } : keys.play(clip, payload, at, raw);
+  const { channels, state, show } = isPartial ? { channels: [], show: () => {} } : keys.play(clip, payload, at, raw);
   const step = () => {
     if (isPartial || frame + 1 >= frames) return false;
     show(++frame);
@@ -429,8 +429,9 @@ const playKeys = (clip, poseOf, payload, at, isPartial, keys) => {
     return player;
   };
   const player = {
-    ...poseOf?.(clip, raw),
-    clip, raw, step, seek, moving,
+    ...poseOf?.(clip, raw, state, channels),
+    clip, raw, step, seek,
+    moving: channels.length,
     get frame() {
       return frame;
     },

@@ -26,6 +26,8 @@ const EXACT = 105;
 const LENGTH = 106;
 const NEGATIVE = 202;
 const CONTEXTS = 204;
+// Words of a moving channel in the state of a player.
+const STATE = 9;
 // What predicts a key.
 const BY_KEY_BEFORE = 0;
 const BY_ITSELF = 1;
@@ -294,8 +296,8 @@ const bends = (keys, looped) => {
   };
 };
 
-// Writes the values of a channel at every frame [22].
-const playInto = (out, keys, frames, looped) => {
+// Writes the values of a channel at every frame, and its velocities there [22].
+const playInto = (out, speeds, keys, frames, looped) => {
   const { grid: { times }, raws } = keys;
   const bend = bends(keys, looped);
   let frame = 0;
@@ -322,7 +324,10 @@ const playInto = (out, keys, frames, looped) => {
       let w = Number(low(bent + slope));
       const k = Number(low(slope));
       for (let left = count; left--; ) {
-        if (frame < frames) out[frame++] = p;
+        if (frame < frames) {
+          out[frame] = p;
+          speeds[frame++] = v;
+        }
         p = (p + v) | 0;
         v = (v + w) | 0;
         w = (w + k) | 0;
@@ -338,20 +343,27 @@ export const keys = {
   check: (flags, frames, states) => {
     if (flags & 0x94 || frames > 8191 || states > 14130) throw new Error("pantin: out of bounds");
   },
-  // The channels that move, and a function that shows a frame. All frames are computed here: 4 bytes for each.
+  // The channels that move, their values and velocities, at the places of those of other clips, and a function that shows a frame. All frames are computed
+  // here: 8 bytes for each.
   play: (clip, payload, at, raw) => {
     const rests = raw.slice();
-    let channels = [];
+    let own = [];
     try {
-      channels = read(clip, payload, at, (channel, value) => (raw[channel] = value)).map((own) => {
-        const values = new Int32Array(clip.frames);
-        playInto(values, own, clip.frames, clip.looped);
-        return [own.slot, values];
+      own = read(clip, payload, at, (channel, value) => (raw[channel] = value)).map((keys) => {
+        const [values, speeds] = [0, 0].map(() => new Int32Array(clip.frames));
+        playInto(values, speeds, keys, clip.frames, clip.looped);
+        return [keys.slot, values, speeds];
       });
     } catch (error) {
       if (error !== BROKEN) throw error;
       raw.set(rests);
     }
-    return { moving: channels.length, show: (frame) => channels.forEach(([channel, values]) => (raw[channel] = values[frame])) };
+    const state = new Int32Array(own.length * STATE);
+    const show = (frame) =>
+      own.forEach(([channel, values, speeds], index) => {
+        raw[channel] = state[index * STATE] = values[frame];
+        state[index * STATE + 1] = speeds[frame];
+      });
+    return { channels: own.map(([channel]) => channel), state, show };
   },
 };

@@ -48,8 +48,8 @@ export function bankOf(file, tools) {
     },
     // Lets a player steer the bank's state machine.
     async steer(player) {
-      const { steer } = await import("./pantin-character.js");
-      return steer(this, player);
+      const [{ steer }, { keys }] = await Promise.all([import("./pantin-character.js"), file[2] === 2 ? import("./pantin-keys.js") : {}]);
+      return steer(this, player, keys);
     },
   };
 }

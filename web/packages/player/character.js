@@ -14,11 +14,11 @@ const FAR = 2n ** 30n;
 const TURNS = 5;
 const SHIFT = 15;
 
-// The character of a bank. Throws an Error if its state machine, or a clip of it, is no good.
-export function opened({ clips, machine, rig, tools: [, checked, , openRawClip] }) {
+// The character of a bank, whose key clips need the `keys` of keys.js. Throws an Error if its state machine, or a clip of it, is no good.
+export function opened({ clips, machine, rig, tools: [, checked, , openRawClip] }, keys) {
   const poseOf = (_, __, state, channels) => ({ state, channels });
   return characterOf(rig, tableOf(checked(machine), clips.length), (index) => {
-    const clip = openRawClip(clips[index], rig, false, { poseOf });
+    const clip = openRawClip(clips[index], rig, false, { poseOf, keys });
     if (clip.rig !== rig) throw new Error("pantin: out of bounds");
     return clip;
   });
@@ -41,11 +41,11 @@ function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {
 }
 
 // Lets a player steer the state machine of a bank: it gets its names and its events.
-export function steer(bank, player) {
+export function steer(bank, player, keys) {
   const { rig, tools: [, , , , figureOf, maths] } = bank;
   let character;
   try {
-    character = opened(bank);
+    character = opened(bank, keys);
   } catch {
     throw new Error(FAULT);
   }
