@@ -186,7 +186,8 @@ class JointRef:
 
     def euler(self, order):
         """Three Euler angles in 2^-32 turns, in any order: "XYZ", "XZY", "YXZ", "YZX", "ZXY" or "ZYX". Each turns about the axis as
-        turned by those before it, as in BVH."""
+        turned by those before it, as in BVH. In `self.order` they are the clip's own if it codes the joint as Euler angles; otherwise the second
+        is within 90 degrees of zero, and near 90 or -90 degrees only the first plus or minus the third is determined."""
         if order not in _ORDERS:
             raise ValueError("no order of Euler angles: %r" % (order,))
         if order == self._own:

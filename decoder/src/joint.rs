@@ -78,8 +78,8 @@ impl<'a> JointRef<'a> {
         self.kinds
     }
 
-    /// The order of its Euler angles in the rig; `None` for a joint whose rotation channels are not one to three Euler angles about
-    /// different axes.
+    /// The order of its Euler angles in the rig, in which [`crate::Turn::euler`] should be asked for them; `None` for a joint whose rotation channels are not one to
+    /// three Euler angles about different axes.
     pub fn euler_order(&self) -> Option<crate::EulerOrder> {
         crate::pose::order_of(self.kinds)
     }

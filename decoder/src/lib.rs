@@ -13,10 +13,11 @@
 //! let mut room = Room::<96, 144>::new();              // memory for 144 channels, 96 of them moving; can be a `static`
 //! let mut player = room.player(clip)?;
 //! let knee = clip.find("left-shin").ok_or("no such joint")?;
+//! let order = knee.euler_order().unwrap_or(EulerOrder::ZXY); // its own: other orders have jumps
 //! let mut clock = Clock::new(&clip);
 //! for _ in 0..100 {
-//!     let [x, y, z] = player.turn(&knee)?.euler(EulerOrder::XYZ);
-//!     println!("frame {}: {} {} {} degrees", player.frame(), x.degrees(), y.degrees(), z.degrees());
+//!     let [first, ..] = player.turn(&knee)?.euler(order); // a shin of this clip has one angle, about x
+//!     println!("frame {}: {} degrees", player.frame(), first.degrees());
 //!     player.advance(&mut clock, 16_667);             // 60 pictures a second, whatever the clip's rate
 //! }
 //! # Ok(())
@@ -33,7 +34,7 @@
 //! | play it frame by frame, seek, rewind | [`Player`], in the memory of a [`Room`] |
 //! | play it by time, at any display rate and speed | [`Clock`] with [`Player::advance`]; [`Player::interpolate`] between frames |
 //! | list a clip's joints | [`Rig::joints`] of [`Clip::rig`] |
-//! | read a joint's angles | [`Clip::find`], [`Player::turn`], then [`Turn::euler`] in any order ([`JointRef::euler_order`] is the source's) |
+//! | read a joint's angles | [`Clip::find`], [`Player::turn`], then [`Turn::euler`] in the joint's own order, [`JointRef::euler_order`], or another |
 //! | know how far a hinge bends, wherever its axis lies | [`Turn::angle`] |
 //! | read a morph weight or a servo channel by name | [`Clip::find_scalar`], [`Player::scalar`] |
 //! | know where joints are in the world | `pantin_math::Kinematics`, `pantin_math::JointChain` |

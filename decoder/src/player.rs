@@ -26,9 +26,10 @@ use fixed::types::U0F16;
 /// let (mut states, mut values) = ([pantin::ChannelState::NEW; 80], [0; 100]);
 /// let mut player = pantin::Player::new(clip, &mut states, &mut values)?;
 /// let knee = clip.find("LeftKnee").ok_or("no knee")?;
+/// let order = knee.euler_order().unwrap_or(pantin::EulerOrder::ZXY);
 /// for _ in 0..clip.frames() {
-///     let [x, y, z] = player.turn(&knee)?.euler(pantin::EulerOrder::XYZ).map(|angle| angle.centidegrees());
-///     println!("frame {}: {x} {y} {z} hundredths of a degree", player.frame());
+///     let [a, b, c] = player.turn(&knee)?.euler(order).map(|angle| angle.centidegrees());
+///     println!("frame {}: {a} {b} {c} hundredths of a degree, in the order {order:?}", player.frame());
 ///     player.step();
 /// }
 /// # Ok(())

@@ -12,8 +12,8 @@ use crate::units::{Angle, Component, Fraction};
 /// ```
 /// # fn knee(player: &pantin::Player) -> Option<i32> {
 /// let knee = player.clip().find("LeftKnee")?;
-/// let [_, _, x] = player.turn(&knee).ok()?.euler(pantin::EulerOrder::ZYX);
-/// Some(x.centidegrees())
+/// let [first, ..] = player.turn(&knee).ok()?.euler(knee.euler_order()?);
+/// Some(first.centidegrees())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug)]

@@ -195,12 +195,13 @@ pub(crate) const NO_ROTATION: Unit = [ONE, 0, 0, 0];
 impl Turn {
     /// The Euler angles in the order asked for: the first angle of the array is about the order's first axis. The rotation that they make is
     /// within 2e-6 degrees of this one.
-    /// [`crate::JointRef::euler_order`] is the order that the source had.
+    ///
+    /// Ask for the joint's own order, [`crate::JointRef::euler_order`]: if the clip codes the joint as Euler angles, they are the clip's own. Otherwise (another
+    /// order, an exponential map, a quaternion) the second angle is within 90 degrees of zero, so that the first and the third can jump by 180 degrees
+    /// from one frame to the next; and where the second is near 90 or -90 degrees, only the first plus or minus the third is determined: a small
+    /// change of the rotation then changes each of them much.
     ///
     /// The angles of a hinge that lies along no axis are three numbers; [`Turn::angle`] is the one by which it bends.
-    ///
-    /// Angles in the joint's own order come back as they are. Otherwise the second angle lies within -90 to 90 degrees; where it
-    /// is within 0.1 degree of either end, the first and the third turn about the same axis, and only their sum is determined.
     ///
     /// The joint's own order costs 21 instructions on a Cortex-M3. Another order costs at most 1,330 from Euler angles, 1,160 from an exponential
     /// map and 990 from a quaternion, and 7,700, 6,100 and 5,300 on a Cortex-M0.

@@ -193,8 +193,8 @@ fn a_program_plays_the_motion_that_its_build_script_converts() {
     let mut player = room.player(clip).unwrap();
     let mut lines = Vec::new();
     for frame in 0..clip.frames() {
-        let [z, y, x] = player.turn(&knee).unwrap().euler(EulerOrder::ZYX).map(|angle| angle.centidegrees());
-        lines.push(format!("{frame}: {z} {y} {x}"));
+        let [a, b, c] = player.turn(&knee).unwrap().euler(EulerOrder::XYZ).map(|angle| angle.centidegrees());
+        lines.push(format!("{frame}: {a} {b} {c}"));
         player.step();
     }
     assert_eq!(printed.lines().collect::<Vec<_>>(), lines);

@@ -26,7 +26,7 @@ class PantinInput {
 };
 
 /* Feet that are held, or not: a character without them has none of their code. */
-template <bool FEET> struct PantinHeldFeet {
+template <bool HoldsFeet> struct PantinHeldFeet {
     pantin_feet memory;
     pantin_result lend(pantin_character *character) { return pantin_character_feet(character, &memory); }
 };
@@ -34,23 +34,23 @@ template <> struct PantinHeldFeet<false> {
     pantin_result lend(pantin_character *) { return PANTIN_NOT_FOUND; }
 };
 
-/* A character whose rig has at most CHANNELS channels, whose machine has at most LAYERS layers (0: they do not play), and whose feet are held if the bank has
- * a table of them. */
-template <uint16_t CHANNELS, uint8_t LAYERS = 1, bool FEET = true> class PantinCharacter {
+/* A character whose rig has at most ChannelCount channels, whose machine has at most LayerCount layers (0: they do not play), and whose feet are held if
+ * the bank has a table of them. */
+template <uint16_t ChannelCount, uint8_t LayerCount = 1, bool HoldsFeet = true> class PantinCharacter {
   public:
     /* Opens a bank with a state machine, in its first state at the origin. Returns false if it is damaged, has no machine, or has more channels or layers:
      * error() says which. */
     bool begin(const uint8_t *bytes, uint32_t length) {
-        uint8_t without = static_cast<uint8_t>((LAYERS ? 0 : PANTIN_WITHOUT_LAYERS) | (FEET ? 0 : PANTIN_WITHOUT_FEET));
-        pantin_animator_memory lent = {own.moving, CHANNELS, own.values, own.pose, offsets, CHANNELS, groups, CHANNELS};
+        uint8_t without = static_cast<uint8_t>((LayerCount ? 0 : PANTIN_WITHOUT_LAYERS) | (HoldsFeet ? 0 : PANTIN_WITHOUT_FEET));
+        pantin_animator_memory lent = {own.moving, ChannelCount, own.values, own.pose, offsets, ChannelCount, groups, ChannelCount};
         memory = lent;
         ready = running = stopped = false;
         result = pantin_character_open(&character, content.open(bytes, length), &memory, without);
         if (result == PANTIN_OK) {
-            result = pantin_character_second(&character, &secondTrack, second.moving, CHANNELS, second.values, CHANNELS);
+            result = pantin_character_second(&character, &secondTrack, second.moving, ChannelCount, second.values, ChannelCount);
         }
-        if (LAYERS) lendLayers();
-        if (result == PANTIN_OK && FEET) {
+        if (LayerCount) lendLayers();
+        if (result == PANTIN_OK && HoldsFeet) {
             pantin_result held = feet.lend(&character);
             if (held != PANTIN_NOT_FOUND) result = held;
         }
@@ -166,30 +166,30 @@ template <uint16_t CHANNELS, uint8_t LAYERS = 1, bool FEET = true> class PantinC
   private:
     /* What a clip at play needs. */
     struct Playing {
-        pantin_channel moving[CHANNELS];
-        int32_t values[CHANNELS], pose[CHANNELS];
+        pantin_channel moving[ChannelCount];
+        int32_t values[ChannelCount], pose[ChannelCount];
     };
 
     void lendLayers() {
         for (uint8_t i = 0; result == PANTIN_OK && i < character.counts[7]; i++) {
-            if (i >= LAYERS) {
+            if (i >= LayerCount) {
                 result = PANTIN_NO_ROOM;
                 return;
             }
-            result = pantin_character_layer(&character, &layers[i], layerMemory[i].moving, CHANNELS, layerMemory[i].values, layerMemory[i].pose, CHANNELS,
-                                            words[i], 16);
+            Playing &lent = layerMemory[i];
+            result = pantin_character_layer(&character, &layers[i], lent.moving, ChannelCount, lent.values, lent.pose, ChannelCount, words[i], 16);
         }
     }
 
     PantinContent content;
     pantin_animator_memory memory;
-    Playing own, second, layerMemory[LAYERS ? LAYERS : 1];
-    pantin_offset offsets[CHANNELS];
-    pantin_group groups[CHANNELS];
+    Playing own, second, layerMemory[LayerCount ? LayerCount : 1];
+    pantin_offset offsets[ChannelCount];
+    pantin_group groups[ChannelCount];
     pantin_track secondTrack;
-    pantin_layer layers[LAYERS ? LAYERS : 1];
-    uint32_t words[LAYERS ? LAYERS : 1][16];
-    PantinHeldFeet<FEET> feet;
+    pantin_layer layers[LayerCount ? LayerCount : 1];
+    uint32_t words[LayerCount ? LayerCount : 1][16];
+    PantinHeldFeet<HoldsFeet> feet;
     uint32_t last;
     uint16_t percent = 100;
     pantin_result result = PANTIN_ERROR_HEAD;

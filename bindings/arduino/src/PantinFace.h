@@ -16,8 +16,8 @@
 #include "pantin_face.h"
 #include "pantin_talk.h"
 
-/* A face of at most VERTICES vertices: the cartoon has 97, the wireframe 239. Emotes have at most CHANNELS channels: ours 7. */
-template <uint16_t VERTICES = 97, uint16_t CHANNELS = 12> class PantinFaceOf {
+/* A face of at most VertexCount vertices: the cartoon has 97, the wireframe 239. Emotes have at most ChannelCount channels: ours 7. */
+template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFaceOf {
   public:
     /* Opens a model for a display of `width` times `height` pixels. Returns false if it is damaged or has more vertices. */
     bool begin(const uint8_t *model, uint32_t length, uint16_t width, uint16_t height) {
@@ -114,15 +114,16 @@ template <uint16_t VERTICES = 97, uint16_t CHANNELS = 12> class PantinFaceOf {
         line(*static_cast<Display *>(context), x, y, count, shade != 0, 0);
     }
 
-    template <class D> static auto line(D &d, uint16_t x, uint16_t y, uint16_t count, bool on, int) -> decltype(d.drawFastHLine(x, y, count, 1), void()) {
+    template <class Surface>
+    static auto line(Surface &d, uint16_t x, uint16_t y, uint16_t count, bool on, int) -> decltype(d.drawFastHLine(x, y, count, 1), void()) {
         d.drawFastHLine(x, y, count, on ? 1 : 0);
     }
-    template <class D> static void line(D &d, uint16_t x, uint16_t y, uint16_t count, bool on, long) {
+    template <class Surface> static void line(Surface &d, uint16_t x, uint16_t y, uint16_t count, bool on, long) {
         d.setDrawColor(on ? 1 : 0);
         d.drawHLine(x, y, count);
     }
 
-    uint32_t memory[PANTIN_FACE_WORDS(VERTICES, CHANNELS)];
+    uint32_t memory[PANTIN_FACE_WORDS(VertexCount, ChannelCount)];
     uint32_t last;
     bool ready = false, running = false;
 };

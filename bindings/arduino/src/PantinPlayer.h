@@ -36,12 +36,16 @@ class PantinJoint : public pantin_joint_ref {
   public:
     PantinJoint() { found = 0; }
     explicit operator bool() const { return found != 0; }
+
+    /* The order of its Euler angles in the rig, in which it should be read (pantin_turn.h says why); PANTIN_XYZ if the rig has none for it. */
+    pantin_order eulerOrder() const { return found && order <= PANTIN_ZYX ? static_cast<pantin_order>(order) : PANTIN_XYZ; }
 };
 
-/* Plays clips of at most CHANNELS channels: for servos, lights and faces. */
-template <uint16_t CHANNELS> class PantinPlayer {
+/* Plays clips of at most ChannelCount channels: for servos, lights and faces. */
+template <uint16_t ChannelCount> class PantinPlayer {
   public:
-    /* Opens a clip or a bank, and shows frame 0 (of a bank: of its first clip). Returns false if it is damaged or has too many channels. */
+    /* Opens a clip or a bank, and shows frame 0 (of a bank: of its first clip). Returns false if it is damaged, has too many channels, or is a key clip
+     * (`pantin convert --segments` writes another one) and PANTIN_KEYS is not defined for the whole build. */
     bool begin(const uint8_t *bytes, uint32_t length) {
         pantin_source *source = content.open(bytes, length);
         isBank = pantin_open_bank(&bank, source) == PANTIN_OK;
@@ -132,8 +136,9 @@ template <uint16_t CHANNELS> class PantinPlayer {
         return joint;
     }
 
-    /* Gives the joint's three Euler angles in degrees, -180 to 180, however the clip codes it: degrees[0] is about the first axis of the order. PANTIN_XYZ
-     * gives a joint that has one axis its angle in degrees[0], [1] or [2]. Returns false, and leaves `degrees`, if there is no such joint. */
+    /* Gives the joint's three Euler angles in degrees, -180 to 180, rounded to 0.01, however the clip codes it: degrees[0] is about the first axis of the
+     * order. Pass joint.eulerOrder(), in which a joint that has one axis has its angle in degrees[0]. Returns false, and leaves `degrees`, if there is no
+     * such joint. */
     bool euler(PantinJoint &joint, pantin_order order, float (&degrees)[3]) {
         int32_t angles[3];
         if (!ready || pantin_euler(&player, &joint, order, angles) != PANTIN_OK) return false;
@@ -182,7 +187,7 @@ template <uint16_t CHANNELS> class PantinPlayer {
 
   protected:
     bool start() {
-        ready = pantin_start(&player, &clip, pose, CHANNELS, moving, CHANNELS) == PANTIN_OK;
+        ready = pantin_start(&player, &clip, pose, ChannelCount, moving, ChannelCount) == PANTIN_OK;
         running = stopped = ended = false;
         fresh = true;
         passed = 0;
@@ -194,17 +199,17 @@ template <uint16_t CHANNELS> class PantinPlayer {
     pantin_bank bank;
     pantin_clip clip;
     pantin_player player;
-    int32_t pose[CHANNELS];
-    pantin_channel moving[CHANNELS];
+    int32_t pose[ChannelCount];
+    pantin_channel moving[ChannelCount];
     uint64_t due;
     uint32_t last, passed; /* the time of the last update; frames that it reached */
     uint16_t percent = 100;
     bool isBank, ready = false, running, fresh, stopped = false, ended = false, repeats = true;
 };
 
-/* Draws clips as a figure of at most BONES bones, from rigs of at most JOINTS joints. */
-template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinFigure : public PantinPlayer<CHANNELS> {
-    typedef PantinPlayer<CHANNELS> Player;
+/* Draws clips as a figure of at most BoneCount bones, from rigs of at most JointCount joints. */
+template <uint16_t ChannelCount, uint16_t BoneCount, uint16_t JointCount> class PantinFigure : public PantinPlayer<ChannelCount> {
+    typedef PantinPlayer<ChannelCount> Player;
 
   public:
     /* Opens a clip or a bank for a display of `width` times `height` pixels. */
@@ -245,8 +250,8 @@ template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinFigure
 
   private:
     bool setUp() {
-        pantin_figure_memory(&figure, bones, BONES, drives, CHANNELS, slots, PANTIN_FIGURE_SLOTS);
-        drawable = pantin_figure_set_up(&figure, &this->player, columns, rows, scratch, JOINTS) == PANTIN_OK;
+        pantin_figure_memory(&figure, bones, BoneCount, drives, ChannelCount, slots, PANTIN_FIGURE_SLOTS);
+        drawable = pantin_figure_set_up(&figure, &this->player, columns, rows, scratch, JointCount) == PANTIN_OK;
         return aim();
     }
 
@@ -270,34 +275,35 @@ template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinFigure
     }
 
     /* Displays whose calls take a colour (Adafruit_GFX, TFT_eSPI), and those that do not and take no places left of 0 (U8g2). */
-    template <class D> static auto dot(D &d, int16_t x, int16_t y, uint16_t color, int) -> decltype(d.drawPixel(x, y, color), void()) {
+    template <class Surface> static auto dot(Surface &d, int16_t x, int16_t y, uint16_t color, int) -> decltype(d.drawPixel(x, y, color), void()) {
         d.drawPixel(x, y, color);
     }
-    template <class D> void dot(D &d, int16_t x, int16_t y, uint16_t, long) {
+    template <class Surface> void dot(Surface &d, int16_t x, int16_t y, uint16_t, long) {
         if (inside(x, y)) d.drawPixel(x, y);
     }
-    template <class D>
-    static auto stretch(D &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t color, int)
+    template <class Surface>
+    static auto stretch(Surface &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t color, int)
         -> decltype(d.drawLine(x0, y0, x1, y1, color), void()) {
         d.drawLine(x0, y0, x1, y1, color);
     }
-    template <class D> void stretch(D &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t, long) {
+    template <class Surface> void stretch(Surface &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t, long) {
         if (inside(x0, y0) && inside(x1, y1)) d.drawLine(x0, y0, x1, y1);
     }
-    template <class D> static auto disc(D &d, int16_t x, int16_t y, int16_t r, uint16_t color, int) -> decltype(d.fillCircle(x, y, r, color), void()) {
+    template <class Surface>
+    static auto disc(Surface &d, int16_t x, int16_t y, int16_t r, uint16_t color, int) -> decltype(d.fillCircle(x, y, r, color), void()) {
         d.fillCircle(x, y, r, color);
     }
-    template <class D> void disc(D &d, int16_t x, int16_t y, int16_t r, uint16_t, long) {
+    template <class Surface> void disc(Surface &d, int16_t x, int16_t y, int16_t r, uint16_t, long) {
         if (inside(x - r, y - r) && inside(x + r, y + r)) d.drawDisc(x, y, r);
     }
     bool inside(int16_t x, int16_t y) const { return x >= 0 && y >= 0 && x < static_cast<int16_t>(columns) && y < static_cast<int16_t>(rows); }
 
     pantin_figure figure;
     pantin_view viewed;
-    pantin_bone bones[BONES];
-    pantin_drive drives[CHANNELS];
+    pantin_bone bones[BoneCount];
+    pantin_drive drives[ChannelCount];
     pantin_slot slots[PANTIN_FIGURE_SLOTS];
-    pantin_joint_info scratch[JOINTS];
+    pantin_joint_info scratch[JointCount];
     uint16_t columns, rows;
     bool drawable;
 };

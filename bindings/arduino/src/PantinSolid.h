@@ -14,8 +14,8 @@
 #include "PantinPlayer.h"
 #include "pantin_solid.h"
 
-/* A figure of at most BONES bones, of rigs with at most CHANNELS channels and JOINTS joints. */
-template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinSolid {
+/* A figure of at most BoneCount bones, of rigs with at most ChannelCount channels and JointCount joints. */
+template <uint16_t ChannelCount, uint16_t BoneCount, uint16_t JointCount> class PantinSolid {
   public:
     /* Changes colours, radii and attachments: bytes that `pantin expand FILE.look -o look.h` writes, which are not copied. Call it before begin(). Returns
      * false for bytes that are no character: nothing changes then. */
@@ -24,10 +24,10 @@ template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinSolid 
     /* Sets the figure up for what plays, and a display's size, and chooses the camera: once, before the first update(). Returns false if nothing was begun or
      * the rig is too large. */
     template <class Source> bool begin(Source &source, uint16_t width, uint16_t height) {
-        pantin_figure_memory(&solid.figure, bones, BONES, drives, CHANNELS, slots, PANTIN_FIGURE_SLOTS);
+        pantin_figure_memory(&solid.figure, bones, BoneCount, drives, ChannelCount, slots, PANTIN_FIGURE_SLOTS);
         ready = false;
         pantin_player *player = source.playing();
-        if (!player || pantin_solid_set_up(&solid, player, width, height, scratch, JOINTS) != PANTIN_OK) return false;
+        if (!player || pantin_solid_set_up(&solid, player, width, height, scratch, JointCount) != PANTIN_OK) return false;
         ready = pantin_solid_aim(&solid, player, &viewed) == PANTIN_OK;
         return ready;
     }
@@ -72,23 +72,23 @@ template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinSolid 
 
   private:
     /* Displays that take pixels as they are sent, and those that take numbers. */
-    template <class D> static auto format(D &d, int) -> decltype(d.pushImage(0, 0, 1, 1, static_cast<uint16_t *>(NULL)), PANTIN_RGB565) {
+    template <class Surface> static auto format(Surface &d, int) -> decltype(d.pushImage(0, 0, 1, 1, static_cast<uint16_t *>(NULL)), PANTIN_RGB565) {
         return PANTIN_RGB565_SWAPPED;
     }
-    template <class D> static pantin_format format(D &, long) { return PANTIN_RGB565; }
-    template <class D>
-    static auto push(D &d, int16_t x, int16_t y, uint16_t w, uint16_t h, uint16_t *pixels, int) -> decltype(d.pushImage(x, y, w, h, pixels), void()) {
+    template <class Surface> static pantin_format format(Surface &, long) { return PANTIN_RGB565; }
+    template <class Surface>
+    static auto push(Surface &d, int16_t x, int16_t y, uint16_t w, uint16_t h, uint16_t *pixels, int) -> decltype(d.pushImage(x, y, w, h, pixels), void()) {
         d.pushImage(x, y, w, h, pixels);
     }
-    template <class D> static void push(D &d, int16_t x, int16_t y, uint16_t w, uint16_t h, uint16_t *pixels, long) {
+    template <class Surface> static void push(Surface &d, int16_t x, int16_t y, uint16_t w, uint16_t h, uint16_t *pixels, long) {
         d.drawRGBBitmap(x, y, pixels, static_cast<int16_t>(w), static_cast<int16_t>(h));
     }
 
     pantin_view viewed = pantin_default_view;
-    pantin_bone bones[BONES];
-    pantin_drive drives[CHANNELS];
+    pantin_bone bones[BoneCount];
+    pantin_drive drives[ChannelCount];
     pantin_slot slots[PANTIN_FIGURE_SLOTS];
-    pantin_joint_info scratch[JOINTS];
+    pantin_joint_info scratch[JointCount];
     bool ready = false, floored = true;
 };
 

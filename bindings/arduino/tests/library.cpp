@@ -1,5 +1,13 @@
 // The classes of the library on this machine: what a clip does at its end, seeking, speed, events; a face, a character and a body with volume whose pixels
-// and poses are those of the functions in C.
+// and poses are those of the functions in C. The macros are names that a sketch may have defined before it includes the library.
+#define CHANNELS 1
+#define BONES 2
+#define JOINTS 3
+#define LAYERS 4
+#define FEET 5
+#define VERTICES 6
+#define D 7
+
 #include <PantinCharacter.h>
 #include <PantinFace.h>
 #include <PantinPlayer.h>

@@ -3,11 +3,17 @@
  * A joint is found once; the reference is then read frame by frame. All numbers are those of the Rust decoder, bit for bit.
  *
  *     pantin_joint_ref knee;
+ *     pantin_order order;
  *     int32_t angles[3];
  *
  *     if (pantin_find(&clip, "left-shin", &knee) != PANTIN_OK) return missing("left-shin");
+ *     order = knee.order == PANTIN_NO_ORDER ? PANTIN_ZXY : (pantin_order)knee.order;
  *     ...
- *     if (pantin_euler(&player, &knee, PANTIN_ZYX, angles) == PANTIN_OK) turn_servo(pantin_centidegrees(angles[2]));
+ *     if (pantin_euler(&player, &knee, order, angles) == PANTIN_OK) turn_servo(pantin_centidegrees(angles[0]));
+ *
+ * Read Euler angles in the joint's own order: if the clip codes the joint as Euler angles, they are the clip's own. Otherwise the second angle is within
+ * 90 degrees of zero, so that the first and the third can jump by 180 degrees from one frame to the next; and where the second is near 90 or -90 degrees,
+ * only the first plus or minus the third is determined.
  */
 #ifndef PANTIN_TURN_H
 #define PANTIN_TURN_H
@@ -56,8 +62,8 @@ pantin_result pantin_refer(const pantin_clip *clip, const pantin_joint *at, pant
 /* The functions below read the joint at the player's frame. They return PANTIN_OK, or without a change of the result PANTIN_NOT_FOUND if the reference
  * is to no joint, PANTIN_ERROR_OTHER_RIG if it is to a joint of another rig, and PANTIN_NEED_MORE if the player has not started. */
 
-/* Gives the three Euler angles in 2^-32 turns; angles[0] is about the first axis of `order`. Angles in the joint's own order are those of the
- * clip. Otherwise the second lies within -90 to 90 degrees. */
+/* Gives the three Euler angles in 2^-32 turns; angles[0] is about the first axis of `order`, one of the six. What they are in the joint's own order and in
+ * others stands at the top of this file. */
 pantin_result pantin_euler(const pantin_player *player, pantin_joint_ref *joint, pantin_order order, int32_t *angles);
 
 /* Gives the unit quaternion w, x, y, z in 2^-30. Of the two that are the same rotation it may be either. */

@@ -45,13 +45,15 @@ pub fn channel_bytes<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, P
 fn text(bytes: &[u8]) -> Result<String> {
     let clip = open(bytes)?;
     let figure = Rig::from(&clip.rig());
-    let joint = |joint: &pantin_convert::motion::Joint| {
+    let joint = |(index, joint): (usize, &pantin_convert::motion::Joint)| {
+        let order = clip.rig().joint_ref(index).and_then(|joint| joint.euler_order());
         json!({
             "name": joint.name,
             "parent": joint.parent,
             "offset": joint.offset.map(|x| x * figure.cm_per_unit),
             "end_site": joint.end_site,
             "helper": joint.helper,
+            "order": order.map(|order| format!("{order:?}")),
         })
     };
     // Channels by what the clip stores: where three Euler angles are coded as an exponential map, its components.
@@ -68,7 +70,7 @@ fn text(bytes: &[u8]) -> Result<String> {
         "moving": clip.moving(),
         "has_keys": clip.has_keys(),
         "up": up::text(figure.up),
-        "joints": figure.joints.iter().map(joint).collect::<Vec<_>>(),
+        "joints": figure.joints.iter().enumerate().map(joint).collect::<Vec<_>>(),
         "scalars": figure.scalars.iter().map(|scalar| json!([scalar.name, scalar.full_scale])).collect::<Vec<_>>(),
         "channels": channels,
         "events": events,

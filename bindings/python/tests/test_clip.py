@@ -78,6 +78,16 @@ def test_the_bvh_has_the_positions(walk, bvh):
     assert np.abs(positions[:, order] * scale - walk.positions()[:, own]).max() < 1e-5
 
 
+def test_joints_with_quaternions_become_bvh(bvh, tmp_path):
+    clip = pantin.convert(bvh, max_error_cm=0.5, rotations="quaternion", effort="fast", cm_per_unit=1)
+    assert any("Wquaternion" in name for name in clip.channel_names)
+    clip.to_bvh(tmp_path / "back.bvh")
+    names, positions = of_bvh(tmp_path / "back.bvh")
+    own = [index for index, joint in enumerate(clip.joints) if not joint.end_site]
+    order = [names.index(clip.joints[index].name) for index in own]
+    assert np.abs(positions[:, order] - clip.positions()[:, own]).max() < 1e-4
+
+
 def test_rotations_by_name_are_those_of_the_decoder(vectors):
     clips, found = {}, {}
     lines = [line.split() for line in (vectors / "turns.txt").read_text().splitlines()]

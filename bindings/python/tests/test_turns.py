@@ -69,5 +69,22 @@ def test_joints_turn_as_by_the_rust_decoder(vectors):
 def test_a_joint_that_is_not_there_is_named(vectors):
     clip = pantin.Clip.open(vectors / "own-mixed.ptn")
     for read in (clip.joint_index, clip.rotations, lambda name: clip.euler(name, "XYZ")):
-        with pytest.raises(KeyError, match="nobody"):
+        with pytest.raises(KeyError, match="no joint 'nobody'\"$"):
             read("nobody")
+
+
+def test_a_name_that_is_alike_is_suggested(walk):
+    for name in ("LEFT-SHIN", "Beta:left-shin", "left-chin"):
+        with pytest.raises(KeyError, match=f"no joint '{name}'; there is 'left-shin'"):
+            walk.joint_index(name)
+
+
+def test_joints_have_the_order_of_their_angles(walk, vectors):
+    orders = {joint.name: joint.order for joint in walk.joints}
+    assert (orders["left-shin"], orders["neck"], orders["chest"], orders["spine"]) == ("XYZ", "YXZ", "YZX", None)
+    clip = pantin.Clip.open(vectors / "turn-orders.ptn")
+    assert [clip.joints[clip.joint_index(name)].order for name in ("j7", "j8")] == ["YXZ", None]
+    # Without an order, angles are in the joint's own: those that the clip stores.
+    raw = walk.raw()[:, walk.channel_names.index("neck.Yrotation")]
+    assert np.array_equal(walk.euler("neck")[:, 0], raw * (360 / 2**32))
+    assert np.array_equal(clip.euler("j8"), clip.euler("j8", "ZXY"))

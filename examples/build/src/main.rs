@@ -1,5 +1,5 @@
-//! Plays a motion that `build.rs` converts, and prints a knee's angle at every frame, in hundredths of a degree: `cargo run --release` in
-//! `examples/build`.
+//! Plays a motion that `build.rs` converts, and prints a knee's angles at every frame, in the joint's own order and in hundredths of a
+//! degree: `cargo run --release` in `examples/build`.
 #![no_std]
 #![no_main]
 
@@ -25,11 +25,12 @@ impl<E: Display> From<E> for Failure {
 fn play() -> Result<(), Failure> {
     let clip = Clip::new_checked(&WALK)?;
     let knee = clip.find("left-shin").ok_or("the clip has no joint left-shin")?;
+    let order = knee.euler_order().unwrap_or(EulerOrder::ZXY);
     let mut room = WalkRoom::new();
     let mut player = room.player(clip)?;
     for frame in 0..clip.frames() {
-        let [z, y, x] = player.turn(&knee)?.euler(EulerOrder::ZYX).map(|angle| angle.centidegrees());
-        hprintln!("{}: {} {} {}", frame, z, y, x);
+        let [a, b, c] = player.turn(&knee)?.euler(order).map(|angle| angle.centidegrees());
+        hprintln!("{}: {} {} {}", frame, a, b, c);
         player.step();
     }
     Ok(())

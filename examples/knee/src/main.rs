@@ -1,5 +1,5 @@
-//! Prints the left knee's Euler angles at every frame, in hundredths of a degree: `cargo run --release` in `examples/knee`.
-//! They are limited to the 90 degrees to either side that a servo reaches; `--max-joint-error 1` bounds each joint's angle in a conversion.
+//! Prints the left knee's Euler angles (its own order: z, y, x) in hundredths of a degree: `cargo run --release` in `examples/knee`.
+//! They are limited to the 90 degrees to either side that a servo reaches; `--max-channel-error 1` bounds each of them in a conversion.
 #![no_std]
 #![no_main]
 use cortex_m_semihosting::{debug, hprintln};

@@ -8,8 +8,8 @@ use crate::memory::Memory;
 /// Bounds of each channel, in place of the joints' bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChannelBound {
-    /// The greatest error of each channel at every frame: degrees for rotations; for all others percent (of a position's range, of a scalar's
-    /// full scale, of 2 for a quaternion's components). Above 0.
+    /// The greatest error of each channel at every frame: degrees for each Euler angle, in its joint's own order; for all others percent (of a position's
+    /// range, of a scalar's full scale, of 2 for a quaternion's components). Above 0.
     Error(f64),
     /// The greatest error of each channel's acceleration, its second difference: degrees per frame^2 for rotations, and percent per frame^2 for all
     /// others. Above 0. Positions and rotations drift.
@@ -49,7 +49,8 @@ pub struct Options {
     pub max_scalar_error: Option<f64>,
     /// The greatest angle in degrees between the true and the decoded rotation of any joint in the world. Above 0, at most 180.
     pub max_rotation_error: Option<f64>,
-    /// The same against the joint's parent: what a servo or a skinned mesh shows.
+    /// The same against the joint's parent, for skinned meshes. A single Euler angle can be off by more, and by much more where the second angle is near
+    /// 90 or -90 degrees: [`ChannelBound::Error`] bounds each.
     pub max_joint_error: Option<f64>,
     /// Bounds of each channel, in place of all bounds above.
     pub channels: Option<ChannelBound>,
@@ -135,7 +136,7 @@ impl Options {
         Options { places_only, ..self }
     }
 
-    /// Bounds rotations against the parent, in degrees.
+    /// Bounds whole rotations against the parent, in degrees.
     pub fn max_joint_error(self, degrees: impl Into<Option<f64>>) -> Options {
         Options { max_joint_error: degrees.into(), ..self }
     }

@@ -14,11 +14,17 @@ export interface JointRef {
   readonly name: string;
   /** The index in `Clip.joints`. */
   readonly index: number;
-  /** The order of the Euler angles of the source; undefined if it has none, or others than one to three about different axes. */
+  /** The joint's own order, that of the Euler angles of the source; undefined if it has none, or others than one to three about different axes. */
   readonly order: EulerOrder | undefined;
   /** What each of `raw()` is: 0-2 position x, y, z; 3-5 Euler angle x, y, z; 6-9 quaternion w, x, y, z; 10-12 exponential map x, y, z. */
   readonly kinds: readonly number[];
-  /** Three Euler angles in 2^-32 turns, the first about the order's first axis: within 2e-6 degrees of the rotation. Throws an Error for another order. */
+  /**
+   * Three Euler angles in 2^-32 turns, the first about the order's first axis: within 2e-6 degrees of the rotation. Throws an Error if it is no order.
+   *
+   * Pass the joint's own `order`: if the clip codes the joint as Euler angles, they are the clip's own. Otherwise the second angle is within 90 degrees of
+   * zero, so that the first and the third can jump by 180 degrees from one frame to the next; and where the second is near 90 or -90 degrees, only the first plus
+   * or minus the third is determined.
+   */
   euler<T extends Numbers = number[]>(order: EulerOrder, out?: T): T;
   /** How far the joint is turned in all, about whatever axis, in 2^-32 turns: 0 to 2^31, which wraps to -2^31. */
   angle(): number;
@@ -30,7 +36,7 @@ export interface JointRef {
   raw(): number[];
 }
 
-/** Finds a joint by its name, of several the first. Throws an Error that names the joint if the clip has none. */
+/** Finds a joint by its name, of several the first. Throws an Error that names the joint, and one that is called alike, if the clip has none. */
 export function findJoint(player: Player, name: string): JointRef;
 
 /** Converts an angle from 2^-32 turns to degrees, -180 to 180. */

@@ -3,11 +3,17 @@
 // A player is all that this module needs of the decoder: programs that do not import it do not load it.
 import { ORDERS, PART, Q, atan2, eulerOf, length, matrixOf, normalize, set, turnsOf } from "./turning.js";
 
-/** Finds a joint by its name, whose rotation is then read frame by frame. */
+// A name without the prefix of its program, in small letters.
+const plain = (name) => name.split(":").pop().toLowerCase();
+
+/** Finds a joint by its name, whose rotation is then read frame by frame. An Error names a joint that is called alike. */
 export const findJoint = (player, name) => {
   const { clip, raw } = player;
   const index = clip.joints.findIndex((joint) => name && joint.name === name);
-  if (index < 0) throw new Error("pantin: no joint " + name);
+  if (index < 0) {
+    const like = name && clip.joints.find((joint) => plain(joint.name) === plain(name));
+    throw new Error("pantin: no joint " + name + (like ? "; there is " + like.name : ""));
+  }
   const { first, kinds } = clip.joints[index];
   const { compute, angles, order, stored } = turnsOf(clip, index);
   return {

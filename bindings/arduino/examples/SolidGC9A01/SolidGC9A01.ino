@@ -16,7 +16,9 @@ void setup() {
   Serial.begin(115200);
   display.begin();
   body.look(LOOK_CAT, LOOK_CAT_LEN);
-  if (!player.begin(CLIP_WALK, CLIP_WALK_LEN)) Serial.println("the clip is damaged or has too many channels");
+  if (!player.begin(CLIP_WALK, CLIP_WALK_LEN)) {
+    Serial.println("the clip is damaged, has too many channels, or is a key clip: convert it with --segments");
+  }
   if (!body.begin(player, 240, 240)) Serial.println("the figure has no room");
 }
 

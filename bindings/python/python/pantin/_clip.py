@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
@@ -58,7 +59,7 @@ class Clip:
             write(rig, self._apart[1])
 
     def to_bvh(self, path: StrPath) -> None:
-        """Writes the clip as BVH. Fails if the clip has scalars, quaternions or no joints, which BVH cannot hold."""
+        """Writes the clip as BVH, with Euler angles in place of quaternions. Fails if the clip has scalars or no joints, which BVH cannot hold."""
         write(path, _pantin.bvh(self._bytes))
 
     def to_keys(self, path: StrPath) -> None:
@@ -112,7 +113,7 @@ class Clip:
 
     @property
     def joints(self) -> Tuple[Joint, ...]:
-        """The joints, parents before children, with offsets in cm; End Sites included."""
+        """The joints, parents before children, with offsets in cm and the orders of their Euler angles; End Sites included."""
         return self._joints
 
     @property
@@ -131,11 +132,13 @@ class Clip:
         return [(frame, name) for frame, name in self._facts["events"]]
 
     def joint_index(self, name: str) -> int:
-        """The index of the joint with this name, of several the first. Raises KeyError if there is none."""
+        """The index of the joint with this name, of several the first. Raises KeyError if there is none; it names the joint that is most alike."""
         for index, joint in enumerate(self.joints):
             if name and joint.name == name:
                 return index
-        raise KeyError(f"no joint {name!r}")
+        names = {joint.name.lower(): joint.name for joint in self.joints if joint.name}
+        alike = difflib.get_close_matches(name.lower(), names, 1)
+        raise KeyError(f"no joint {name!r}" + (f"; there is {names[alike[0]]!r}" if alike else ""))
 
     def rotations(self, joint: Optional[str] = None) -> Floats:
         """Rotations of the joints in their parents, as quaternions w, x, y, z of length 1: (frames, joints, 4). With a joint's name, those of this
@@ -147,13 +150,20 @@ class Clip:
         every = self._floats(_pantin.rotations(self._bytes), len(self.joints), 4)
         return every if index is None else every[:, index]
 
-    def euler(self, joint: str, order: str) -> Floats:
+    def euler(self, joint: str, order: Optional[str] = None) -> Floats:
         """Rotations of a joint in its parent as Euler angles in degrees, -180 to 180, however the clip codes them: (frames, 3).
 
-        `order` is one of the six from 'XYZ' to 'ZYX': each angle turns about the axis as turned by those before it, as in BVH. The angles are those of the
-        decoder on a device: multiples of 2^-32 turns. Raises KeyError if there is no such joint.
+        `order` is one of the six from 'XYZ' to 'ZYX': each angle turns about the axis as turned by those before it, as in BVH. Default: the joint's own
+        order (`Joint.order`), or 'ZXY' if it has none. In its own order, the angles of a joint that the clip codes as Euler angles are the clip's own. Otherwise
+        the second angle is within 90 degrees of zero, so that the first and the third can jump by 180 degrees from one frame to the next; and where the
+        second is near 90 or -90 degrees, only the first plus or minus the third is determined.
+
+        The angles are those of the decoder on a device: multiples of 2^-32 turns. Raises KeyError if there is no such joint.
         """
-        turns = np.frombuffer(_pantin.euler(self._bytes, self.joint_index(joint), order), np.int32)
+        index = self.joint_index(joint)
+        if order is None:
+            order = self.joints[index].order or "ZXY"
+        turns = np.frombuffer(_pantin.euler(self._bytes, index, order), np.int32)
         return turns.reshape(self.frames, 3).astype(np.float64) * (360 / 2**32)
 
     def positions(self) -> Floats:

@@ -22,6 +22,9 @@ class Joint(NamedTuple):
     """Whether it is only the end of a bone."""
     helper: bool = False
     """Whether it only steers other joints and is not drawn."""
+    order: Optional[str] = None
+    """The order of its Euler angles in a clip's rig, such as 'ZXY'; None if it has none, or others than one to three about different axes. `pantin.convert`
+    does not read it: the joints of a `Motion` become ZXY."""
 
 
 @dataclass

@@ -1,12 +1,13 @@
 //! BVH out: the joints, End Sites, channels and frames of a motion, for any other tool.
 
+use super::euler_frames::EulerFrames;
 use crate::motion::{Frames, Joint, Kind, Rig};
 use anyhow::{Context, Result, bail};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::io::Write;
 
-/// Which channels a file has.
+/// Which channels a file has, with Euler angles in place of quaternions and exponential maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Columns {
     /// Those of the motion.
@@ -15,9 +16,10 @@ pub enum Columns {
     ThreeRotations,
 }
 
-/// Writes `motion` as BVH. Values carry seven decimals, so they come back within 5e-8 of their unit. Fails
-/// on what BVH cannot hold, and names the joint.
+/// Writes `motion` as BVH. Values carry seven decimals, so they come back within 5e-8 of their unit. Quaternions and exponential maps become three Euler
+/// angles: in the joint's own order if the rig has one, else z, x, y. Fails on what BVH cannot hold, and names it.
 pub fn write(motion: &impl Frames, of: Columns, out: &mut impl Write) -> Result<()> {
+    let motion = &EulerFrames::new(motion);
     let rig = motion.rig();
     let mut text = String::from("HIERARCHY\n");
     let order = hierarchy(rig, of, &mut text)?;
@@ -236,10 +238,39 @@ Frame Time: 0.008333333
     }
 
     #[test]
+    fn quaternions_and_exponential_maps_become_euler_angles() {
+        use Kind::*;
+        let joints = vec![
+            joint("hip", None, &[Yposition, Wquaternion, Xquaternion, Yquaternion, Zquaternion], false),
+            joint("knee", Some(0), &[Xexponential, Yexponential, Zexponential], false),
+            joint("toe", Some(1), &[Xrotation, Yrotation, Zrotation, Wquaternion, Xquaternion, Yquaternion, Zquaternion], false),
+        ];
+        // A quarter turn about x; 30 degrees about y; 20 degrees about z, then a quaternion of no length, which turns nothing.
+        let half = 0.5f64.sqrt();
+        let mut motion = motion(joints, &[7.0, half, half, 0.0, 0.0, 0.0, 30.0, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 0.0, 0.0]);
+        // The opposite quaternion is the same rotation: the angles stay.
+        motion.frames = 2;
+        motion.values.iter_mut().for_each(|values| values.push(values[0]));
+        motion.values[1..5].iter_mut().for_each(|values| values[1] = -values[1]);
+        for of in [Columns::Own, Columns::ThreeRotations] {
+            let mut out = Vec::new();
+            write(&motion, of, &mut out).unwrap();
+            let text = String::from_utf8(out).unwrap();
+            let channels: Vec<&str> = text.lines().filter_map(|line| line.trim().strip_prefix("CHANNELS ")).collect();
+            let expected = [
+                "4 Yposition Zrotation Xrotation Yrotation",
+                "3 Zrotation Xrotation Yrotation",
+                "3 Xrotation Yrotation Zrotation",
+            ];
+            assert_eq!(channels, expected);
+            let rows: Vec<&str> = text.lines().rev().take(2).collect();
+            assert_eq!(rows, ["7 0 90 0 0 0 30 0 0 20"; 2]);
+        }
+    }
+
+    #[test]
     fn what_bvh_cannot_hold_is_named() {
         let error = |motion: &Motion| format!("{:#}", write(motion, Columns::Own, &mut Vec::new()).unwrap_err());
-        let quaternion = motion(vec![joint("hip", None, &[Kind::Wquaternion], false)], &[1.0]);
-        assert!(error(&quaternion).contains("joint `hip`: BVH has no Wquaternion"));
         let mut scalar = motion(vec![joint("hip", None, &[], false)], &[1.0]);
         scalar.rig.scalars.push(Scalar { name: "smile".into(), full_scale: 1.0 });
         assert!(error(&scalar).contains("`smile`"));

@@ -1,6 +1,6 @@
 //! CSV out: a row of names, then time and values frame by frame, for spreadsheets, plots, and the table importer.
 
-use crate::motion::{Frames, Rig};
+use crate::motion::{Frames, Joint, Kind, Rig};
 use anyhow::Result;
 use std::collections::HashSet;
 use std::io::Write;
@@ -23,13 +23,13 @@ pub fn write(motion: &impl Frames, out: impl Write) -> Result<()> {
     }
     writer.write_record(None::<&[u8]>)?;
     let mut peaks = vec![0f64; motion.rig().channels()];
-    motion.each(&mut |pose| {
+    each_pose(motion, &mut |pose| {
         peaks.iter_mut().zip(pose).for_each(|(peak, value)| *peak = peak.max(value.abs()));
         Ok(())
     })?;
     let decimals: Vec<usize> = peaks.into_iter().map(decimals).collect();
     let (mut frame, mut left) = (0u32, events.as_slice());
-    motion.each(&mut |pose| {
+    each_pose(motion, &mut |pose| {
         writer.write_field(number(f64::from(frame) * motion.frame_time(), 9))?;
         for (&value, &decimals) in pose.iter().zip(&decimals) {
             writer.write_field(number(value, decimals))?;
@@ -43,6 +43,32 @@ pub fn write(motion: &impl Frames, out: impl Write) -> Result<()> {
         Ok(writer.write_record(None::<&[u8]>)?)
     })?;
     Ok(writer.flush()?)
+}
+
+/// Calls `each` with the values at every frame, in which a quaternion without length, as a clip has it for a joint at rest, is 1, 0, 0, 0: both turn nothing.
+fn each_pose(motion: &impl Frames, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+    let quaternions = quaternions(motion.rig());
+    let mut values = Vec::new();
+    motion.each(&mut |pose| {
+        values.clear();
+        values.extend_from_slice(pose);
+        for (real, channels) in &quaternions {
+            if channels.iter().all(|&channel| pose[channel] == 0.0) {
+                values[*real] = 1.0;
+            }
+        }
+        each(&values)
+    })
+}
+
+/// The channels of each joint's quaternion, and which of them is w.
+fn quaternions(rig: &Rig) -> Vec<(usize, Vec<usize>)> {
+    let of_joint = |(joint, first): (&Joint, usize)| {
+        let real = joint.kinds.iter().position(|kind| *kind == Kind::Wquaternion)?;
+        let channels = (first..).zip(&joint.kinds).filter(|(_, kind)| kind.is_quaternion()).map(|(channel, _)| channel);
+        Some((first + real, channels.collect()))
+    };
+    rig.joints.iter().zip(rig.first_channels()).filter_map(of_joint).collect()
 }
 
 /// The name of the column of events.
@@ -76,7 +102,7 @@ fn number(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Event, Joint, Kind, Motion, Scalar};
+    use crate::motion::{Event, Motion, Scalar};
 
     #[test]
     fn every_channel_has_a_column() {
@@ -110,6 +136,28 @@ mod tests {
         write(&Motion { events: vec![event("step"), event("clap")], ..motion }, &mut out).unwrap();
         let expected = "time,hip.Xrotation,\"jaw, open\",still,events\n0,-370.125,0.3333333,0,\n0.033333333,12,0,0,step|clap\n";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_quaternion_at_rest_is_the_identity() {
+        use Kind::{Wquaternion, Xquaternion, Yquaternion, Zquaternion};
+        let joint = |name: &str, kinds: &[Kind]| Joint {
+            name: name.into(),
+            parent: None,
+            offset: [0.0; 3],
+            kinds: kinds.to_vec(),
+            end_site: false,
+            helper: false,
+        };
+        let joints = vec![
+            joint("still", &[Wquaternion, Xquaternion, Yquaternion, Zquaternion]),
+            joint("turned", &[Xquaternion, Yquaternion, Zquaternion, Wquaternion]),
+        ];
+        let rig = Rig { joints, cm_per_unit: 1.0, ..Rig::default() };
+        let values = [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0].map(|value| vec![value]).to_vec();
+        let mut out = Vec::new();
+        write(&Motion::sampled(rig, 0.1, 1, values), &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap().lines().nth(1), Some("0,1,0,0,0,1,0,0,0"));
     }
 
     /// Places far from the origin, of which a bound may be a millionth.

@@ -5,8 +5,8 @@ use pantin_convert::Options;
 /// Bounds for each channel, in place of --max-error.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
-    /// Instead of --max-error: largest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
-    /// position's range, of a scalar's full scale, of 2 for a quaternion's components)
+    /// Instead of --max-error: largest error of each channel at every frame, in degrees for each Euler angle in its joint's own order, as for servos, and in
+    /// percent for all others (of a position's range, of a scalar's full scale, of 2 for a quaternion's components)
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_channel_error: Option<f64>,
     /// Instead of --max-error: largest error of each channel's acceleration (second difference) at every frame, in degrees per frame^2 for

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// Turn a clip back into per-frame motion, or a clip, a bank or a character into source text for firmware.
 ///
-/// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
+/// The output's extension selects the format: .bvh has the same joints and frames, and three Euler angles a joint, which stand for its quaternion or exponential map, too; .glb is a
 /// tree of nodes, with scalars as morph weights; .keys is key-frame text, with the keys of a clip that holds keys (`pantin convert --keys`); .csv has one row per frame with the time in seconds and
 /// all channels' values; .h and .rs hold the bytes of the clip or the bank, names, and the sizes of the memory that it takes: in Rust as a
 /// type, `WalkRoom`. A .look file, a character of solid figures, becomes a .h for C.
@@ -233,7 +233,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Format::Glb => 4 * values,
         Format::H | Format::Rs => 3 * files.clip_len() as u64,
         Format::Keys => files.clip_len() as u64,
-        Format::Bvh | Format::Csv => 2 * values,
+        // Four components of a quaternion become three angles.
+        Format::Bvh => 3 * values / 2,
+        Format::Csv => 2 * values,
     };
     output::check_size(output, least)?;
     if clip.event_count() > 0 && matches!(format, Format::Bvh) {

@@ -3,6 +3,8 @@
 use pantin::{Angle, Clip, EulerOrder, Room, WrongForm};
 use pantin_convert::expand::expand;
 use pantin_convert::fk;
+use pantin_convert::import::ImportOptions;
+use pantin_convert::motion::Motion;
 use pantin_figure::JointChain;
 use std::path::{Path, PathBuf};
 
@@ -86,10 +88,67 @@ fn joints_of_our_own_clips_are_where_double_precision_puts_them() {
     assert!(exponential > 0, "no joint is coded as an exponential map");
 }
 
+fn captured(name: &str) -> PathBuf {
+    std::env::var_os("PANTIN_DATA").map_or_else(|| motions().join("../../../shared/data"), PathBuf::from).join(name)
+}
+
+/// The greatest error of an Euler angle, in its joint's own order, and of a joint's rotation in its parent, in degrees.
+fn errors(source: &Motion, clip: &Path) -> [f64; 2] {
+    let bytes = std::fs::read(clip).unwrap();
+    let clip = Clip::new_checked(&bytes).unwrap();
+    let mut room = Memory::new();
+    let mut player = room.player(clip).unwrap();
+    let firsts = source.rig.first_channels();
+    let mut worst = [0f64; 2];
+    for frame in 0..source.frames {
+        for (index, joint) in source.rig.joints.iter().enumerate() {
+            let reference = clip.rig().joint_ref(index).unwrap();
+            let Some(order) = reference.euler_order() else { continue };
+            let turning = (firsts[index]..).zip(&joint.kinds).filter(|(_, kind)| kind.is_rotation());
+            let truth: Vec<(usize, f64)> =
+                turning.map(|(channel, kind)| (kind.axis().unwrap(), source.values[channel][frame])).collect();
+            let angles = player.turn(&reference).unwrap().euler(order).map(degrees);
+            for (angle, (_, truth)) in angles.iter().zip(&truth) {
+                let off = angle - truth;
+                worst[0] = worst[0].max((off - 360.0 * (off / 360.0).round()).abs());
+            }
+            let got = of_angles(order.axes().into_iter().map(|axis| axis as usize).zip(angles));
+            worst[1] = worst[1].max(between(&got, &of_angles(truth)));
+        }
+        player.step();
+    }
+    worst
+}
+
+/// What the pages say to authors of servos and of skinned meshes.
+#[test]
+fn a_bound_of_channels_holds_for_each_euler_angle_and_one_of_joints_for_rotations() {
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("a.ptn");
+    for (path, least) in [(motions().join("library/dance.keys"), 0.5), (captured("bvh_bandai1_kick.bvh"), 5.0)] {
+        if !path.exists() {
+            println!("skipped: {} is not there; set PANTIN_DATA", path.display());
+            continue;
+        }
+        let source = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
+        let worst = |options: &[&str]| {
+            let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"));
+            let done = command.arg("convert").arg(&path).arg("-o").arg(&clip).args(options).output().unwrap();
+            assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+            errors(&source, &clip)
+        };
+        let [single, whole] = worst(&["--max-channel-error", "1", "--segments"]);
+        println!("{}: --max-channel-error: {single} degrees an angle, {whole} a rotation", path.display());
+        assert!(single > 0.5 && single <= 1.0, "{single}");
+        let [single, whole] = worst(&["--max-joint-error", "1", "--segments", "--effort", "fast"]);
+        println!("{}: --max-joint-error: {single} degrees an angle, {whole} a rotation", path.display());
+        assert!(single > least && whole > 0.5 && whole <= 1.0, "{single} {whole}");
+    }
+}
+
 #[test]
 fn joints_of_captured_clips_are_where_double_precision_puts_them() {
-    let data = std::env::var_os("PANTIN_DATA").map_or_else(|| motions().join("../../../shared/data"), PathBuf::from);
-    let bvh = data.join("bvh_cmu131_start-walk-stop.bvh");
+    let bvh = captured("bvh_cmu131_start-walk-stop.bvh");
     if !bvh.exists() {
         return println!("skipped: {} is not there; set PANTIN_DATA", bvh.display());
     }

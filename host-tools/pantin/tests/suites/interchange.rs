@@ -61,6 +61,32 @@ fn exported_bvh_has_three_rotations_a_joint() {
 }
 
 #[test]
+fn joints_with_quaternions_become_bvh_and_tables() {
+    let folder = Folder::new();
+    let (head, _) = LEAF.split_once("0 90").unwrap();
+    let rows: Vec<String> = (0..4).map(|frame| format!("0 90 0 0 0 0 {} 0 0\n", 20 * frame)).collect();
+    folder.put("leaf.bvh", head.replace("1 Xrotation", "3 Xrotation Yrotation Zrotation") + &rows.concat());
+    let options = ["--rotations", "quaternion", "--max-joint-error", "0.1", "--cm-per-unit", "1"];
+    folder.done(&[&["convert", "leaf.bvh", "-o", "leaf.ptn"][..], &options].concat());
+    folder.done(&["expand", "leaf.ptn", "-o", "back.bvh"]);
+    let back = crate::told::load(&folder.path("back.bvh"), &ImportOptions::new()).unwrap().motion;
+    let first = back.rig.first_channels()[back.rig.joints.iter().position(|joint| joint.name == "arm").unwrap()];
+    for frame in 0..4 {
+        // The rig has lost the order of the angles: z, x, y.
+        let [z, x, y] = [0, 1, 2].map(|slot| back.values[first + slot][frame]);
+        assert!(z.abs() < 0.2 && (x - 20.0 * frame as f64).abs() < 0.2 && y.abs() < 0.2, "frame {frame}: {z} {x} {y}");
+    }
+    // The hip rests.
+    folder.done(&["expand", "leaf.ptn", "-o", "leaf.csv"]);
+    let table = String::from_utf8(folder.get("leaf.csv")).unwrap();
+    let columns: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let real = columns.iter().position(|name| *name == "hip.Wquaternion").unwrap();
+    for row in table.lines().skip(1) {
+        assert_eq!(row.split(',').skip(real).take(4).collect::<Vec<_>>(), ["1", "0", "0", "0"]);
+    }
+}
+
+#[test]
 fn joints_that_bvh_cannot_name_are_said_and_stay_apart() {
     let folder = Folder::new();
     let joints =

@@ -198,7 +198,9 @@ let turned = 0;
   }
   const player = players.get("turn-orders");
   assert.deepEqual([findJoint(player, "j7").order, findJoint(player, "j8").order], ["YXZ", undefined]);
-  assert.throws(() => findJoint(player, "nobody"), /no joint nobody/);
+  assert.throws(() => findJoint(player, "nobody"), /no joint nobody$/);
+  assert.throws(() => findJoint(player, "Rig:J7"), /no joint Rig:J7; there is j7/);
+  assert.throws(() => findJoint(player), /no joint undefined$/);
   assert.throws(() => findJoint(player, ""), /no joint/);
   assert.throws(() => findJoint(player, "j0").euler("XYX"), /no order of Euler angles XYX/);
   assert.throws(() => findJoint(player, "j8").euler(), /no order of Euler angles/);

@@ -1,5 +1,6 @@
 //! The programs of the README of the decoder in C, as written.
 
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
@@ -10,7 +11,7 @@ use tempfile::TempDir;
 use super::{home, output};
 
 /// Compiles the first program with the README's own command, beside the header that `pantin expand` writes, and compares the angles that it prints. The
-/// other programs are compiled alone.
+/// program that opens a file opens one and a part of it. The other programs are compiled alone.
 pub fn run(folder: &TempDir) -> Result<()> {
     let place = folder.path().join("readme");
     std::fs::create_dir_all(&place)?;
@@ -31,7 +32,7 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let mut shell = Command::new("sh");
     shell.current_dir(&place).args(["-c", compile]);
     let printed = String::from_utf8(output(shell)?.stdout)?;
-    let expected = angles(&std::fs::read(clip)?)?;
+    let expected = angles(&std::fs::read(&clip)?)?;
     ensure!(printed == expected, "the program prints\n{printed}");
     let others: Vec<&str> = readme.split("```c\n").skip(2).filter_map(|rest| rest.split("```").next()).collect();
     for (index, program) in others.iter().enumerate() {
@@ -46,6 +47,24 @@ pub fn run(folder: &TempDir) -> Result<()> {
     }
     println!("   {} frames, {} further programs", expected.lines().count(), others.len());
     ensure!(others.len() >= 4, "few programs");
+    let opens = others.iter().find(|program| program.contains("int open_file(")).context("no program opens a file")?;
+    open_file(&place, opens, &clip)
+}
+
+/// Opens a clip, a part of it and no file by the program of the README.
+fn open_file(place: &Path, program: &str, clip: &Path) -> Result<()> {
+    let main = "int main(int count, char **names) { return open_file(names[count - 1]) ? (int)clip.frames & 127 : 128; }\n";
+    std::fs::write(place.join("open.c"), format!("{program}\n{main}"))?;
+    let mut gcc = Command::new("gcc");
+    gcc.current_dir(place).args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Isrc", "open.c", "src/pantin.c", "-o", "open"]);
+    output(gcc)?;
+    let bytes = std::fs::read(clip)?;
+    std::fs::write(place.join("part.ptn"), &bytes[..bytes.len() - 1])?;
+    let frames = Clip::new_checked(&bytes)?.frames();
+    for (path, expected) in [(clip, frames as i32 & 127), (&place.join("part.ptn"), 128), (&place.join("none.ptn"), 128)] {
+        let status = Command::new(place.join("open")).arg(path).status()?;
+        ensure!(status.code() == Some(expected), "{}: {status}", path.display());
+    }
     Ok(())
 }
 

@@ -1,5 +1,5 @@
 //! The first clip moves a puppet: the angles of joints become pulses for four servos on GP6 to GP9, within each servo's limits. For servos convert with
-//! `--max-joint-error 1`, which bounds the angle of each joint. If the clip lacks a joint, no servo gets pulses, and the display and the serial
+//! `--max-channel-error 1`, which bounds each Euler angle. If the clip lacks a joint, no servo gets pulses, and the display and the serial
 //! line say which joints are missing.
 #![no_std]
 #![no_main]
