@@ -505,13 +505,14 @@ static void angles_of(const int32_t *q, uint8_t order, int32_t *angles) {
 pantin_result pantin_euler(const pantin_player *player, pantin_joint_ref *joint, pantin_order order, int32_t *angles) {
     pantin_result result = check(player, joint);
     int32_t q[4];
+    uint8_t wanted = (unsigned)order > PANTIN_ZYX ? own_order(joint) : (uint8_t)order;
     if (result != PANTIN_OK) return result;
-    if (joint->form == PANTIN_FORM_EULER && own_order(joint) == (uint8_t)order) {
+    if (joint->form == PANTIN_FORM_EULER && own_order(joint) == wanted) {
         own_values(player->pose, joint, q);
         memcpy(angles, q, 3 * sizeof *q);
     } else {
         unit(player->pose, joint, q);
-        angles_of(q, (uint8_t)order, angles);
+        angles_of(q, wanted, angles);
     }
     return PANTIN_OK;
 }

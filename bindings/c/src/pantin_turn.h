@@ -62,8 +62,8 @@ pantin_result pantin_refer(const pantin_clip *clip, const pantin_joint *at, pant
 /* The functions below read the joint at the player's frame. They return PANTIN_OK, or without a change of the result PANTIN_NOT_FOUND if the reference
  * is to no joint, PANTIN_ERROR_OTHER_RIG if it is to a joint of another rig, and PANTIN_NEED_MORE if the player has not started. */
 
-/* Gives the three Euler angles in 2^-32 turns; angles[0] is about the first axis of `order`, one of the six. What they are in the joint's own order and in
- * others stands at the top of this file. */
+/* Gives the three Euler angles in 2^-32 turns; angles[0] is about the first axis of `order`, one of the six. Any other number is
+ * the joint's own order, or XYZ if it has none. What the angles are in its own order and in others stands at the top of this file. */
 pantin_result pantin_euler(const pantin_player *player, pantin_joint_ref *joint, pantin_order order, int32_t *angles);
 
 /* Gives the unit quaternion w, x, y, z in 2^-30. Of the two that are the same rotation it may be either. */

@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
         pantin_joint at;
         pantin_first_joint(&at, &clip.rig);
         for (i = 0; i < clip.rig.joints; i++) {
-            int32_t matrix[9], quaternion[4], angle, angles[6 * 3];
+            int32_t matrix[9], own[3], quaternion[4], angle, angles[6 * 3];
             char name[64];
             check(pantin_next_joint(&at) == 1, "joint");
             pantin_copy_name(&at.name, name, sizeof name);
@@ -115,6 +115,10 @@ int main(int argc, char **argv) {
             for (order = PANTIN_XYZ; order <= PANTIN_ZYX; order++) {
                 check(pantin_euler(&player, &joints[i], (pantin_order)order, angles + 3 * order) == PANTIN_OK, "angles");
             }
+            /* What is no order is the joint's own. */
+            order = joints[i].order == PANTIN_NO_ORDER ? PANTIN_XYZ : joints[i].order;
+            check(pantin_euler(&player, &joints[i], (pantin_order)PANTIN_NO_ORDER, own) == PANTIN_OK, "own order");
+            check(memcmp(own, angles + 3 * order, 3 * sizeof *angles) == 0, "angles in the own order");
             printf("%s %lu", name, (unsigned long)player.frame);
             print(angles + 3 * PANTIN_XYZ, 3);
             print(angles + 3 * PANTIN_ZXY, 3);
