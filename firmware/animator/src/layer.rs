@@ -86,33 +86,55 @@ pub fn blend(
     weight: Weight,
 ) -> Result<(), WrongForm> {
     form.check(layer.form)?;
-    if weight == Weight::ZERO {
-        return Ok(());
-    }
-    for group in groups.iter().filter(|group| mask.contains(group.bit.into())) {
-        let range = group.range();
-        let (Some(own), Some(to)) = (pose.get_mut(range.clone()), layer.values.get(range)) else { continue };
-        mix_group(group.shape, own, to, weight);
+    if weight != Weight::ZERO {
+        mix_groups(pose, groups.iter().filter(mask.picks()), layer.values, weight);
     }
     Ok(())
 }
 
-/// Mixes the channels of a group.
+/// Mixes the channels of groups.
 #[inline(always)]
-pub(crate) fn mix_group(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
-    // Three angles or a map, as most joints have, and near each other, as they are mostly: each is read once.
-    if let ([a, b, c], &[x, y, z]) = (&mut *own, to)
-        && shape != Shape::Quaternion
-    {
-        let (d, e, f) = (x.wrapping_sub(*a), y.wrapping_sub(*b), z.wrapping_sub(*c));
-        if shape == Shape::Free || weight == Weight::ONE || !(is_far(d) | is_far(e) | is_far(f)) {
-            *a = a.wrapping_add(weight.of(d));
-            *b = b.wrapping_add(weight.of(e));
-            *c = c.wrapping_add(weight.of(f));
-            return;
+pub(crate) fn mix_groups<'g>(pose: &mut [i32], groups: impl Iterator<Item = &'g Group>, to: &[i32], weight: Weight) {
+    // Of one length, of which the compiler knows: one comparison for both.
+    let len = pose.len().min(to.len());
+    let (pose, to) = (pose.get_mut(..len).unwrap_or_default(), to.get(..len).unwrap_or_default());
+    for group in groups {
+        let range = group.range();
+        let (Some(own), Some(to)) = (pose.get_mut(range.clone()), to.get(range)) else { continue };
+        if weight == Weight::ONE {
+            own.iter_mut().zip(to).for_each(|(own, to)| *own = *to);
+        } else {
+            mix_group(group.shape, own, to, weight);
         }
     }
+}
+
+/// Mixes the channels of a group.
+#[inline(always)]
+fn mix_group(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
+    // Three angles or a map, as most joints have, and near each other, as they are mostly.
+    if let (Ok(own), Ok(to)) = (<&mut [i32; 3]>::try_from(&mut *own), <&[i32; 3]>::try_from(to))
+        && mix_near(own, to, weight)
+    {
+        return;
+    }
     mix_any(shape, own, to, weight);
+}
+
+/// Mixes three channels unless one of them is far from the other; false if so. In a function of its own: its loop keeps its registers.
+#[inline(never)]
+fn mix_near(own: &mut [i32; 3], to: &[i32; 3], weight: Weight) -> bool {
+    let ([a, b, c], &[x, y, z]) = (own, to);
+    let (d, e, f) = (x.wrapping_sub(*a), y.wrapping_sub(*b), z.wrapping_sub(*c));
+    // The highest bit of a sum is that of a difference of a quarter turn or more, but for one of exactly that.
+    let sum = |d: i32| d.wrapping_add(FAR as i32);
+    let near = sum(d) | sum(e) | sum(f) >= 0;
+    if near {
+        *a = a.wrapping_add(weight.of(d));
+        *b = b.wrapping_add(weight.of(e));
+        *c = c.wrapping_add(weight.of(f));
+    }
+    near
 }
 
 /// A quarter turn.

@@ -1,6 +1,7 @@
 //! Which joints and scalars a layer moves: one bit each.
 
 use crate::error::{Error, Name};
+use crate::groups::Group;
 use pantin::Rig;
 
 /// Joints of which [`Mask::set`] notes that they match, on its stack; those of larger rigs are looked up again.
@@ -82,6 +83,20 @@ impl<'m> Mask<'m> {
     #[inline(always)]
     pub fn contains(&self, index: usize) -> bool {
         self.words.get(index / 32).is_some_and(|word| word >> (index % 32) & 1 != 0)
+    }
+
+    /// Whether a group is in the mask, for one after the other: each word is read once.
+    #[inline(always)]
+    pub(crate) fn picks(&self) -> impl FnMut(&&Group) -> bool + '_ {
+        let (mut at, mut word) = (u16::MAX, 0);
+        move |group| {
+            let bit = group.bit;
+            if at != bit / 32 {
+                at = bit / 32;
+                word = self.words.get(usize::from(at)).copied().unwrap_or(0);
+            }
+            word >> (bit % 32) & 1 != 0
+        }
     }
 
     /// Adds or removes a joint, or, counted after the joints, a scalar.
