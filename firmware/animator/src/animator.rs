@@ -4,8 +4,8 @@ use crate::Error;
 use crate::carry::Carried;
 use crate::events::{EventQueue, EventsLost};
 use crate::groups::{self, Group};
-use crate::layer::{Weight, blend, mix_groups};
-use crate::mask::Mask;
+use crate::layer::{Weight, blend, mix_all};
+use crate::mask::{Mask, Run};
 use crate::memory::Memory;
 use crate::root::{self, Placement, Root, Travel};
 use crate::track::{Passage, Track, Traveller, copy};
@@ -363,7 +363,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         let pose = other.pose();
         form.check(pose.form)?;
         let groups = self.groups.get(..self.used_groups).unwrap_or_default();
-        mix_groups(self.pose, groups.iter(), pose.values, weight);
+        mix_all(self.pose, groups.iter().map(Run::of_group), pose.values, weight);
         other.add_part_of(weight, self.pose);
         self.root.leave_place(self.pose);
         Ok(())

@@ -162,6 +162,9 @@ impl<'a> Layer<'a, '_> {
         match self.state {
             LayerState::Rests if allowed && machine.was_seen(self.row.input) => {
                 self.track.start(*self.track.clip(), 0, I16F16::ONE)?;
+                if self.track.clip().form_ref() == animator.form() {
+                    self.mask.prepare(animator.groups());
+                }
                 self.ramp.go_to(Weight::ONE, self.row.fade_us);
                 self.state = LayerState::Plays;
             }
