@@ -46,6 +46,25 @@ impl<'a> BankEntry<'a> {
     }
 }
 
+/// Iterates over the clips of a bank.
+#[derive(Clone, Debug)]
+pub struct BankEntries<'a> {
+    contents: Reader<'a>,
+    clips: Reader<'a>,
+}
+
+impl<'a> Iterator for BankEntries<'a> {
+    type Item = BankEntry<'a>;
+
+    fn next(&mut self) -> Option<BankEntry<'a>> {
+        if self.contents.rest().is_empty() {
+            return None;
+        }
+        let name = self.contents.name();
+        Some(BankEntry { name, bytes: self.clips.take(self.contents.varint()) })
+    }
+}
+
 impl<'a> Bank<'a> {
     /// Checks the rig and the contents of a bank.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Bank<'a>, OpenError> {
@@ -117,15 +136,8 @@ impl<'a> Bank<'a> {
     }
 
     /// The clips in their order.
-    pub fn entries(&self) -> impl Iterator<Item = BankEntry<'a>> + use<'a> {
-        let (mut contents, mut clips) = (Reader::new(self.contents), Reader::new(self.clips));
-        core::iter::from_fn(move || {
-            if contents.rest().is_empty() {
-                return None;
-            }
-            let name = contents.name();
-            Some(BankEntry { name, bytes: clips.take(contents.varint()) })
-        })
+    pub fn entries(&self) -> BankEntries<'a> {
+        BankEntries { contents: Reader::new(self.contents), clips: Reader::new(self.clips) }
     }
 
     /// Finds a clip by its name, of equal names the first. Names are compared byte by byte.

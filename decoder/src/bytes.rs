@@ -68,6 +68,17 @@ impl<'a> Reader<'a> {
         varint.value
     }
 
+    /// Passes over numbers of a slice.
+    #[inline(never)]
+    pub(crate) fn skip_varints(&mut self, count: u32) {
+        let mut left = count;
+        while left > 0 {
+            let byte = self.bytes.get(self.position as usize).copied().unwrap_or(0);
+            self.position = self.position.wrapping_add(1);
+            left -= u32::from(byte < 0x80);
+        }
+    }
+
     /// A varint that holds a signed number as 0, -1, 1, -2, ...
     pub(crate) fn zigzag(&mut self) -> i32 {
         unzigzag(self.varint())

@@ -5,7 +5,7 @@ use crate::bytes::Reader;
 use crate::channel::ChannelState;
 use crate::entropy::{Cursor, Symbols};
 use crate::form::{CodedKinds, Form, FormRef};
-use crate::joint::{JointRef, has_choice};
+use crate::joint::JointRef;
 #[cfg(feature = "keys")]
 use crate::keys::layout::{KEY_FLAGS, KEY_VERSION, KEYS, MAX_KEY_FRAMES, MAX_STATES};
 use crate::layout::*;
@@ -171,11 +171,7 @@ impl Head {
         self.exponentials = reader.position as u8;
         if self.flags & HAS_EXPONENTIALS != 0 {
             // A joint with a choice has three channels: 43 bytes at most.
-            let (mut joints, mut choices) = (rig.joints(), 0usize);
-            while joints.read() {
-                choices += usize::from(has_choice(&joints.joint));
-            }
-            self.exponential_bytes = choices.div_ceil(8) as u8;
+            self.exponential_bytes = rig.choices().div_ceil(8) as u8;
             reader.position += u32::from(self.exponential_bytes);
         }
         #[cfg(feature = "keys")]

@@ -34,6 +34,16 @@ impl<'a> Player<'a, '_> {
 }
 
 impl<'a> DetachedPlayer<'a> {
+    /// A player of a clip that has not begun, which takes no time to make: its memory holds nothing of it, and before it plays, [`Player::new`] has to
+    /// take its place. `None` if this many states are perhaps too few.
+    pub fn idle(clip: Clip<'a>, states: usize) -> Option<DetachedPlayer<'a>> {
+        #[cfg(feature = "keys")]
+        let most = if clip.has_keys() { clip.moving() } else { clip.rig().channels() };
+        #[cfg(not(feature = "keys"))]
+        let most = clip.rig().channels();
+        (most <= states).then_some(DetachedPlayer { clip, moving: most as u16, position: PlayState::default() })
+    }
+
     /// The player in its memory again; `None` if there is less of it than before.
     pub fn attach<'m>(&self, states: &'m mut [ChannelState], values: &'m mut [i32]) -> Option<Player<'a, 'm>> {
         Player::resume(self.clip, self.moving.into(), self.position, states, values)

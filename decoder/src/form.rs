@@ -120,6 +120,10 @@ impl FormRef<'_> {
         if self.length_exponent != other.length_exponent {
             return Err(WrongForm::LengthExponent);
         }
+        // Of one clip, as mostly.
+        if core::ptr::eq(self.exponentials, other.exponentials) {
+            return Ok(());
+        }
         let (mut own, mut its) = (self.exponentials.iter(), other.exponentials.iter());
         loop {
             match (own.next(), its.next()) {

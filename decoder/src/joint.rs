@@ -99,6 +99,12 @@ pub fn has_choice(joint: &Joint<'_>) -> bool {
     joint.kinds.filter(|kind: &Kind| kind.is_rotation()).count() == 3
 }
 
+/// Reads the kinds of the joint that begins with a byte.
+pub(crate) fn kinds<'a>(reader: &mut Reader<'a>, head: u8) -> Kinds<'a> {
+    let len = head & JOINT_CHANNELS;
+    Kinds::new(reader.take(u32::from(len).div_ceil(2)), len)
+}
+
 /// Iterates over the joints of a rig.
 #[derive(Clone, Debug)]
 pub struct Joints<'a> {
@@ -136,7 +142,7 @@ impl<'a> Joints<'a> {
         reader.malformed |=
             head & !(JOINT_CHANNELS | END_SITE | HELPER) != 0 || (joint.end_site && len != 0) || parent > MAX_JOINTS as u32;
         joint.parent = (parent as u16).checked_sub(1);
-        joint.kinds = Kinds::new(reader.take(u32::from(len).div_ceil(2)), len);
+        joint.kinds = kinds(reader, head);
         for along in &mut joint.offset {
             *along = reader.zigzag();
         }

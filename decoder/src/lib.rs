@@ -100,7 +100,7 @@ use codec::{crc, entropy, layout, segment, tables};
 /// The crate of the types of [`units`], so that programs need not depend on it.
 pub use fixed;
 
-pub use bank::{Bank, BankEntry};
+pub use bank::{Bank, BankEntries, BankEntry};
 pub use channel::ChannelState;
 pub use clip::{Clip, Event, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 pub use clock::Clock;

@@ -3,9 +3,9 @@
 //! A rig's bytes depend on nothing but the figure, so that clips can share one by its [`Rig::id`].
 
 use crate::bytes::Reader;
-use crate::joint::{Joint, JointRef, Joints};
-use crate::kind::Kind;
-use crate::layout::{MAX_CHANNELS, MAX_JOINTS};
+use crate::joint::{Joint, JointRef, Joints, has_choice};
+use crate::kind::{Kind, Kinds};
+use crate::layout::{END_SITE, MAX_CHANNELS, MAX_JOINTS};
 use crate::scalar::{ScalarRef, Scalars};
 use crate::{OpenError, crc, names};
 
@@ -19,6 +19,8 @@ pub struct Rig<'a> {
     joints: u16,
     scalars: u16,
     joint_channels: u16,
+    /// Joints with a choice: [`has_choice`].
+    choices: u16,
     /// Millionths of a centimetre.
     unit_micro_cm: u32,
     id: Id,
@@ -86,6 +88,7 @@ impl<'a> Rig<'a> {
         joints: 0,
         scalars: 0,
         joint_channels: 0,
+        choices: 0,
         unit_micro_cm: 0,
         id: Id(names::HASH_OF_NOTHING),
         length_exponent: 0,
@@ -116,6 +119,7 @@ impl<'a> Rig<'a> {
         let mut walk = self.joints();
         let mut index = 0;
         while walk.read() {
+            self.choices += u16::from(has_choice(&walk.joint));
             let joint = &mut walk.joint;
             walk.reader.malformed |= joint.parent.map_or(index != 0, |parent| parent >= index) || !joint.kinds.are_of_joint();
             index += 1;
@@ -131,8 +135,8 @@ impl<'a> Rig<'a> {
 
     /// The same rig in other bytes.
     pub(crate) fn with_bytes<'b>(&self, body: &'b [u8]) -> Rig<'b> {
-        let Rig { joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent, up, .. } = *self;
-        Rig { body, joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent, up }
+        let Rig { joints_at, joints, scalars, joint_channels, choices, unit_micro_cm, id, length_exponent, up, .. } = *self;
+        Rig { body, joints_at, joints, scalars, joint_channels, choices, unit_micro_cm, id, length_exponent, up }
     }
 
     /// The FNV-1a hash (32 bits) of the rig's bytes, by which a clip without a rig names the one that it needs.
@@ -179,7 +183,8 @@ impl<'a> Rig<'a> {
     /// Channels that move no joint. In a pose they follow the joints' channels.
     pub fn scalars(&self) -> Scalars<'a> {
         let mut joints = self.joints();
-        joints.by_ref().for_each(drop);
+        // They stand behind the joints.
+        while self.scalars > 0 && joints.read() {}
         Scalars::new(joints.reader, self.scalars)
     }
 
@@ -191,6 +196,11 @@ impl<'a> Rig<'a> {
     /// Channels of a pose that belong to joints; scalars follow them.
     pub fn joint_channels(&self) -> usize {
         usize::from(self.joint_channels)
+    }
+
+    /// Joints with a choice.
+    pub(crate) fn choices(&self) -> usize {
+        usize::from(self.choices)
     }
 
     /// Length of a pose.
@@ -230,16 +240,49 @@ impl Id {
     }
 }
 
-/// Walks the channels of a pose.
+/// Walks the channels of a pose. Of the rig's bytes it reads what a channel needs, for each start of a clip walks through all of them.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelIter<'a> {
-    joints: Joints<'a>,
+    reader: Reader<'a>,
+    /// Those left of the joint that was read last.
+    kinds: Kinds<'a>,
+    /// Where its offset is.
+    offset_at: u32,
+    joints: u16,
     scalars: u16,
 }
 
 impl<'a> Rig<'a> {
     pub(crate) fn slots(&self) -> ChannelIter<'a> {
-        ChannelIter { joints: self.joints(), scalars: self.scalars }
+        let reader = self.joints().reader;
+        ChannelIter { reader, kinds: Kinds::NONE, offset_at: 0, joints: self.joints, scalars: self.scalars }
+    }
+}
+
+impl ChannelIter<'_> {
+    /// Goes to the next joint; false if there is none.
+    #[inline(never)]
+    fn read(&mut self) -> bool {
+        let Some(left) = self.joints.checked_sub(1) else { return false };
+        self.joints = left;
+        let head = self.reader.byte();
+        self.reader.skip_varints(1);
+        self.kinds = crate::joint::kinds(&mut self.reader, head);
+        self.offset_at = self.reader.position;
+        self.reader.skip_varints(3);
+        if head & END_SITE == 0 {
+            self.reader.name();
+        }
+        true
+    }
+
+    /// The offset of the last joint along an axis.
+    #[inline(never)]
+    fn offset(&self, axis: u32) -> i32 {
+        let mut reader = self.reader;
+        reader.position = self.offset_at;
+        reader.skip_varints(axis);
+        reader.zigzag()
     }
 }
 
@@ -249,12 +292,11 @@ impl Iterator for ChannelIter<'_> {
 
     fn next(&mut self) -> Option<(Kind, i32)> {
         loop {
-            if let Some(kind) = self.joints.joint.kinds.next() {
+            if let Some(kind) = self.kinds.next() {
                 // The first three kinds are positions, in the order of the axes.
-                let offset = self.joints.joint.offset.get(kind as usize).copied();
-                return Some((kind, offset.unwrap_or(0)));
+                return Some((kind, if kind.is_position() { self.offset(kind as u32) } else { 0 }));
             }
-            if !self.joints.read() {
+            if !self.read() {
                 self.scalars = self.scalars.checked_sub(1)?;
                 return Some((Kind::Scalar, 0));
             }

@@ -155,6 +155,16 @@ impl Matrix {
         euler_of(&self.rows, order)
     }
 
+    /// The first of the angles that [`Matrix::euler`] gives, for two thirds of its instructions.
+    pub fn first_angle(&self, order: EulerOrder) -> Angle {
+        Angle::from_bits(first_of(&self.rows, order, last_of(&self.rows, order)))
+    }
+
+    /// The matrix of a rotation that [`Turn::quaternion`] gave.
+    pub fn of_quaternion(unit: [Component; 4]) -> Matrix {
+        matrix_of(unit.map(Component::to_bits))
+    }
+
     /// The image of a vector in any unit, each component below 2^31 in magnitude.
     pub fn apply(&self, vector: [i32; 3]) -> [i64; 3] {
         let [x, y, z] = vector;
@@ -363,20 +373,38 @@ fn polar(y: i32, x: i32) -> (i32, i32) {
     (angle, scaled(x, cos) + scaled(y, sin))
 }
 
+/// An element of a rotation matrix.
+fn at(matrix: &[[Component; 3]; 3], row: Axis, column: Axis) -> i32 {
+    matrix.get(row.index()).and_then(|row| row.get(column.index())).map_or(0, |element| element.to_bits())
+}
+
+/// 1 where the axes are an even permutation of x, y, z, else -1.
+fn sign(order: EulerOrder) -> i32 {
+    if order.is_even() { 1 } else { -1 }
+}
+
 /// The Euler angles of a rotation matrix: Ri(a) Rj(b) Rk(c).
 fn euler_of(matrix: &[[Component; 3]; 3], order: EulerOrder) -> [Angle; 3] {
-    let [i, j, k] = order.axes().map(Axis::index);
-    let at = |row: usize, column: usize| matrix.get(row).and_then(|row| row.get(column)).map_or(0, |element| element.to_bits());
-    // 1 where i, j, k is an even permutation of x, y, z, else -1.
-    let sign = if order.is_even() { 1 } else { -1 };
-    let c = atan2(-sign * at(i, j), at(i, i));
-    let (sin, cos) = sin_cos(c);
-    let cos_b = narrow(times(at(i, i), cos) - times(sign * at(i, j), sin));
-    let b = atan2(sign * at(i, k), cos_b);
-    // Without the third angle the image of axis j shows the first alone, also where the second is a quarter turn.
-    let image = |row: usize| narrow(times(sign * at(row, i), sin) + times(at(row, j), cos));
-    let a = atan2(sign * image(k), image(j));
-    [a, b, c].map(Angle::from_bits)
+    let ([i, j, k], sign) = (order.axes(), sign(order));
+    let last = last_of(matrix, order);
+    let (c, (sin, cos)) = last;
+    let cos_b = narrow(times(at(matrix, i, i), cos) - times(sign * at(matrix, i, j), sin));
+    let b = atan2(sign * at(matrix, i, k), cos_b);
+    [first_of(matrix, order, last), b, c].map(Angle::from_bits)
+}
+
+/// The last angle, with its sine and cosine.
+fn last_of(matrix: &[[Component; 3]; 3], order: EulerOrder) -> (i32, (i32, i32)) {
+    let [i, j, _] = order.axes();
+    let c = atan2(-sign(order) * at(matrix, i, j), at(matrix, i, i));
+    (c, sin_cos(c))
+}
+
+/// The first angle. Without the last one the image of axis j shows it alone, also where the second is a quarter turn.
+fn first_of(matrix: &[[Component; 3]; 3], order: EulerOrder, (_, (sin, cos)): (i32, (i32, i32))) -> i32 {
+    let ([i, j, k], sign) = (order.axes(), sign(order));
+    let image = |row: Axis| narrow(times(sign * at(matrix, row, i), sin) + times(at(matrix, row, j), cos));
+    atan2(sign * image(k), image(j))
 }
 
 #[cfg(test)]

@@ -16,10 +16,22 @@ pub(crate) fn push(crc: u16, byte: u8) -> u16 {
     (crc << 8) ^ (quotient << 12) ^ (quotient << 5) ^ quotient
 }
 
+/// Continues `crc` over two bytes, in two thirds of the instructions of twice [`push`].
+#[inline(always)]
+fn push_pair(crc: u16, pair: [u8; 2]) -> u16 {
+    let top = crc ^ u16::from_be_bytes(pair);
+    // Their quotient: x^32 divided by the polynomial is x^16 + x^12 + x^8 + x^5 + x^4.
+    let part = top ^ (top >> 4);
+    let quotient = part ^ (part >> 8) ^ (top >> 11);
+    (quotient << 12) ^ (quotient << 5) ^ quotient
+}
+
 /// Continues `crc` over `bytes`. Not inlined: it is small, and called in many places.
 #[inline(never)]
 pub fn update(crc: u16, bytes: &[u8]) -> u16 {
-    bytes.iter().fold(crc, |crc, &byte| push(crc, byte))
+    let (pairs, last) = bytes.as_chunks::<2>();
+    let crc = pairs.iter().fold(crc, |crc, &pair| push_pair(crc, pair));
+    last.iter().fold(crc, |crc, &byte| push(crc, byte))
 }
 
 /// The CRC of `bytes` alone.
@@ -49,6 +61,14 @@ mod tests {
     #[test]
     fn check_value_of_the_catalogue() {
         assert_eq!(of(b"123456789"), 0x29b1);
+    }
+
+    #[test]
+    fn pairs_are_two_bytes() {
+        for step in 0..65_536u32 {
+            let (crc, pair) = ((step.wrapping_mul(40_503) >> 3) as u16, (step as u16).to_be_bytes());
+            assert_eq!(push_pair(crc, pair), pair.into_iter().fold(crc, push), "{crc:x} {pair:?}");
+        }
     }
 
     #[test]

@@ -4,14 +4,14 @@ use crate::Error;
 use crate::carry::Carried;
 use crate::events::{EventQueue, EventsLost};
 use crate::groups::{self, Group};
-use crate::layer::{Weight, blend, mix_group};
-use crate::mask::Mask;
+use crate::layer::{Weight, blend, mix_all};
+use crate::mask::{Mask, Run};
 use crate::memory::Memory;
 use crate::root::{self, Placement, Root, Travel};
 use crate::track::{Passage, Track, Traveller, copy};
 use crate::transition::{AGAIN, Cubic, Offset};
 use fixed::types::{I16F16, U0F16};
-use pantin::{Clip, FormRef, Pose, WrongForm};
+use pantin::{Clip, DetachedPlayer, FormRef, Player, Pose, WrongForm};
 
 /// What the figure's root does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +61,14 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// [`Animator::new`] for a figure that is carried by the joint of an index, as where captures hang on a joint that stands still.
     pub fn carried_by(carrier: usize, clip: Clip<'a>, memory: Memory<'m>) -> Result<Self, Error> {
+        let player = Player::new(clip, memory.states, memory.values)?.detach();
+        Self::of_player(carrier, player, memory)
+    }
+
+    /// [`Animator::carried_by`] for a player that is in the memory, at frame 0.
+    pub(crate) fn of_player(carrier: usize, player: DetachedPlayer<'a>, memory: Memory<'m>) -> Result<Self, Error> {
         let Memory { states, values, offsets, pose, groups } = memory;
+        let clip = player.clip();
         let needed = clip.rig().channels();
         let check = |what, given| if given < needed { Err(Error::TooSmall { what, needed, given }) } else { Ok(()) };
         check("offsets", offsets.len())?;
@@ -69,7 +76,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         let (offsets, pose) = (offsets.get_mut(..needed).unwrap_or_default(), pose.get_mut(..needed).unwrap_or_default());
         let used_groups = groups::set_up(&clip.rig(), clip.form_ref(), groups)?;
         let root = Root::of(&clip.rig(), groups, carrier).ok_or(Error::NoCarrier)?;
-        let track = Track::new(clip, states, values)?;
+        let track = Track::of_player(player, states, values);
         let mut animator = Animator {
             track,
             offsets,
@@ -202,7 +209,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         if passage.laps != 0
             && let Some(seam) = self.track.seam()
         {
-            self.travel.pass(passage.laps, &seam);
+            self.travel.pass(passage.laps, seam);
         }
         self.events.pass(self.track.clip(), passage);
     }
@@ -246,11 +253,26 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// serves it is cheaper than [`Animator::update`]. A transition goes on by a frame too.
     pub fn step(&mut self) -> Result<(), EventsLost> {
         let lost = self.events.lost();
-        let passage = self.step_track();
-        self.pass(&passage);
+        if !self.step_within() {
+            let passage = self.step_track();
+            self.pass(&passage);
+        }
         self.compose();
         self.locate();
         self.events.check(lost)
+    }
+
+    /// Goes on by a frame in the middle of a clip without events, if nothing but the additions is to be done, as mostly; false otherwise.
+    #[inline(always)]
+    fn step_within(&mut self) -> bool {
+        if self.track.clip().event_count() != 0 {
+            return false;
+        }
+        let done = if self.left > 0 { self.step_within_carried() } else { self.carried.is_none() && self.track.step_inside() };
+        if done {
+            self.rest_ns = 0;
+        }
+        done
     }
 
     fn step_track(&mut self) -> Passage {
@@ -276,9 +298,7 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     pub(crate) fn solve_again(&mut self) {
         if AGAIN.contains(&self.left) {
-            let cubic = Cubic::new(self.left);
-            // Those that are at zero too: what is left of their acceleration would lead away again.
-            self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
+            Cubic::new(self.left).solve_all(self.offsets);
         }
     }
 
@@ -342,11 +362,8 @@ impl<'a, 'm> Animator<'a, 'm> {
         let form = self.form();
         let pose = other.pose();
         form.check(pose.form)?;
-        for group in self.groups.get(..self.used_groups).unwrap_or_default() {
-            let range = group.range();
-            let (Some(own), Some(to)) = (self.pose.get_mut(range.clone()), pose.values.get(range)) else { continue };
-            mix_group(group.shape, own, to, weight);
-        }
+        let groups = self.groups.get(..self.used_groups).unwrap_or_default();
+        mix_all(self.pose, groups.iter().map(Run::of_group), pose.values, weight);
         other.add_part_of(weight, self.pose);
         self.root.leave_place(self.pose);
         Ok(())

@@ -7,14 +7,14 @@
 use crate::animator::Animator;
 use crate::layer::Weight;
 use crate::track::Passage;
-use crate::transition::{AGAIN, Offset};
+use crate::transition::{AGAIN, Cubic, Offset};
 use fixed::types::I16F16;
 use pantin::ChannelState;
 
 /// Most frames that an update goes on by with carried offsets.
 const MOST_FRAMES: u8 = 8;
 
-/// Frames that are left of a transition where it is no longer worth it.
+/// Frames that are left of a transition where it is no longer worth it to begin.
 const FEW: u8 = 2;
 
 /// Offsets that the states of the clip's moving channels hold, too. The offsets themselves stay what they were when that began.
@@ -62,9 +62,24 @@ impl Animator<'_, '_> {
         self.run_carried((self.left > 0).then_some((1, 0)))
     }
 
+    /// [`Animator::step_carried`] to a frame that is neither one of the last nor one where the cubics are solved, while offsets are carried; false otherwise.
+    #[inline(always)]
+    pub(crate) fn step_within_carried(&mut self) -> bool {
+        let Some(mut carried) = self.carried.filter(|_| self.left > FEW + 1 && self.may_carry(1, 0)) else { return false };
+        let left = self.left - 1;
+        if AGAIN.contains(&left) {
+            return false;
+        }
+        self.left = left;
+        self.track.set_rest(0);
+        self.carry_on(&mut carried);
+        self.carried = Some(carried);
+        true
+    }
+
     #[inline(never)]
     fn run_carried(&mut self, way: Option<(u8, u32)>) -> Option<Passage> {
-        let way = way.filter(|&(frames, _)| self.may_carry(frames));
+        let way = way.filter(|&(frames, rest_ns)| self.may_carry(frames, rest_ns));
         let Some(((frames, rest_ns), mut carried)) = way.and_then(|way| Some((way, self.carry()?))) else {
             self.leave_carried();
             return None;
@@ -77,19 +92,60 @@ impl Animator<'_, '_> {
         self.left -= frames;
         self.rest_ns = rest_ns;
         self.track.set_rest(rest_ns);
-        if frames > 0 && AGAIN.contains(&self.left) {
-            self.leave_carried();
-            self.solve_again();
+        if self.left == 0 {
+            self.drop_carried();
+        } else if frames > 0 && AGAIN.contains(&self.left) {
+            if rest_ns == 0 {
+                self.solve_carried(carried);
+            } else {
+                self.leave_carried();
+                self.solve_again();
+            }
         }
         let to = self.track.frame();
         Some(Passage { from, from_rest, to, to_rest: rest_ns != 0, laps: 0, forward: true })
     }
 
-    /// Whether this many frames lead neither to the last frame nor past one where the cubics are solved.
-    fn may_carry(&self, frames: u8) -> bool {
-        let Some(left) = self.left.checked_sub(frames).filter(|_| self.left > FEW) else { return false };
+    /// Whether this many frames, and a time in the frame after, lead neither to the last frame nor past one where the cubics are solved. Between the last
+    /// frames the way of the clip and that of the offset are rounded each by itself.
+    fn may_carry(&self, frames: u8, rest_ns: u32) -> bool {
+        let Some(left) = self.left.checked_sub(frames) else { return false };
+        let lasts = self.left > FEW || (self.carried.is_some() && rest_ns == 0);
         let solved = frames > 1 && AGAIN.into_iter().any(|at| self.left > at && left < at);
-        !solved && self.track.frame() + u32::from(frames) + 1 < self.track.clip().frames()
+        lasts && !solved && self.track.frame() + u32::from(frames) + 1 < self.track.clip().frames()
+    }
+
+    /// Solves the cubics again where carried offsets stand on a frame: their accelerations and slopes change, in the states too.
+    #[inline(never)]
+    fn solve_carried(&mut self, carried: Carried) {
+        let cubic = Cubic::new(self.left);
+        let states = self.track.moving().map_or(&mut [][..], |(states, _)| states);
+        let mut states = states.iter_mut().peekable();
+        for (slot, offset) in self.offsets.iter_mut().enumerate() {
+            let state = states.next_if(|state| state.slot() == slot);
+            if *offset == Offset::ZERO {
+                continue;
+            }
+            let was = offset.after(carried.frames);
+            *offset = was;
+            cubic.solve(offset);
+            if let Some(state) = state {
+                add(state, 1, [0, offset.w.wrapping_sub(was.w), offset.k.wrapping_sub(was.k)]);
+            }
+        }
+        self.carried = Some(Carried { frames: 0, ..carried });
+    }
+
+    /// At the end of a transition, where differences and velocities are 0: takes what is left out of the states.
+    #[inline(never)]
+    fn drop_carried(&mut self) {
+        let Some(Carried { frames, .. }) = self.carried.take() else { return };
+        let Some((states, _)) = self.track.moving() else { return };
+        for state in states {
+            let Some(&Offset { w, k, .. }) = self.offsets.get(state.slot()) else { continue };
+            add(state, -1, [0, w.wrapping_add(k.wrapping_mul(frames.into())), k]);
+        }
+        self.offsets.fill(Offset::ZERO);
     }
 
     /// Puts the offsets into the states unless they are there; `None` for a clip whose channels follow others, or which has keys.
@@ -137,7 +193,7 @@ impl Animator<'_, '_> {
 
     #[inline(never)]
     fn take_out(&mut self, carried: Carried) {
-        for offset in self.offsets.iter_mut() {
+        for offset in self.offsets.iter_mut().filter(|offset| **offset != Offset::ZERO) {
             *offset = offset.after(carried.frames);
         }
         let Some((states, values)) = self.track.moving() else { return };
@@ -171,7 +227,7 @@ impl Animator<'_, '_> {
 mod tests {
     use super::*;
     use crate::memory::Workspace;
-    use crate::transition::{Cubic, Transition};
+    use crate::transition::Transition;
     use pantin::{Clip, Player};
 
     fn clip(bytes: &'static [u8]) -> Clip<'static> {

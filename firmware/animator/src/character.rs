@@ -50,8 +50,14 @@ impl<'a, 'm> Character<'a, 'm> {
     pub fn new(bytes: &'a [u8], memory: Memory<'m>) -> Result<Self, Error> {
         let bank = Bank::new_checked(bytes)?;
         let machine = Machine::new(Table::of_checked(&bank).map_err(Error::Machine)?);
-        let carrier = carrier(&bank, machine.table(), memory.states, memory.values)?;
-        let mut animator = Animator::carried_by(carrier, machine.first_clip(&bank)?, memory)?;
+        let (carrier, player) = root::carrier(&bank, clips(machine.table()), memory.states, memory.values)?;
+        // That of the first clip is mostly the one by which the carrier was found.
+        let first = machine.table().state(machine.state()).map(|row| row.clip);
+        let player = player.filter(|(clip, _)| Some(*clip) == first).map(|(_, player)| player);
+        let mut animator = match player {
+            Some(player) => Animator::of_player(carrier, player, memory)?,
+            None => Animator::carried_by(carrier, machine.first_clip(&bank)?, memory)?,
+        };
         machine.start(&mut animator);
         Ok(Character { bank, machine, animator, second: None, layers: Vec::new(), feet: None })
     }
@@ -76,7 +82,7 @@ impl<'a, 'm> Character<'a, 'm> {
         for pattern in row.joints.split('\n') {
             mask.set(&rig, pattern, true)?;
         }
-        let track = Track::new(clip, states, values)?;
+        let track = Track::idle(clip, states, values)?;
         let layer = Layer { row, track, sampled, mask, ramp: Ramp::at(Weight::ZERO), state: LayerState::Rests };
         self.layers.push(layer).map_err(|_| missing)
     }
@@ -140,7 +146,7 @@ impl<'a, 'm> Character<'a, 'm> {
         let entries = self.feet.as_ref().map(|(.., entries)| *entries);
         let updated = self.machine.update_with(entries, elapsed_us, &self.bank, &mut self.animator, self.second.as_mut())?;
         for layer in &mut self.layers {
-            layer.update(elapsed_us, &self.machine, &self.bank, &mut self.animator)?;
+            layer.update(elapsed_us, &self.machine, &mut self.animator)?;
         }
         if let Some((feet, hold, _)) = &mut self.feet {
             let (clip, frame) = self.machine.on_the_ground(&self.animator, self.second.as_ref());
@@ -151,17 +157,14 @@ impl<'a, 'm> Character<'a, 'm> {
 }
 
 impl<'a> Layer<'a, '_> {
-    fn update(
-        &mut self,
-        elapsed_us: u32,
-        machine: &Machine<'a>,
-        bank: &Bank<'a>,
-        animator: &mut Animator<'a, '_>,
-    ) -> Result<(), Error> {
+    fn update(&mut self, elapsed_us: u32, machine: &Machine<'a>, animator: &mut Animator<'a, '_>) -> Result<(), Error> {
         let allowed = self.row.states >> (machine.state() % 64) & 1 != 0;
         match self.state {
             LayerState::Rests if allowed && machine.was_seen(self.row.input) => {
-                self.track.start(clip(bank, self.row.clip)?, 0, I16F16::ONE)?;
+                self.track.start(*self.track.clip(), 0, I16F16::ONE)?;
+                if self.track.clip().form_ref() == animator.form() {
+                    self.mask.prepare(animator.groups());
+                }
                 self.ramp.go_to(Weight::ONE, self.row.fade_us);
                 self.state = LayerState::Plays;
             }
@@ -202,13 +205,9 @@ pub fn first_clip(bytes: &[u8]) -> Result<Clip<'_>, Error> {
     Machine::new(Table::of_checked(&bank).map_err(Error::Machine)?).first_clip(&bank)
 }
 
-/// The clips of all states.
-fn clips<'a>(bank: &Bank<'a>, table: &Table<'a>) -> impl Iterator<Item = Result<Clip<'a>, Error>> {
-    (0..table.states()).filter_map(|state| table.state(state as u8)).map(|state| clip(bank, state.clip))
-}
-
-fn carrier(bank: &Bank<'_>, table: &Table<'_>, states: &mut [ChannelState], values: &mut [i32]) -> Result<usize, Error> {
-    root::carrier(clips(bank, table), states, values)
+/// The indices of the clips of all states.
+fn clips(table: &Table<'_>) -> impl Iterator<Item = u8> {
+    (0..table.states()).filter_map(|state| table.state(state as u8)).map(|state| state.clip)
 }
 
 /// Poses of a clip that [`visit_poses`] visits.
@@ -225,9 +224,9 @@ pub fn visit_poses<'a>(
 ) -> Result<(), Error> {
     let bank = Bank::new_checked(bytes)?;
     let table = Table::of_checked(&bank).map_err(Error::Machine)?;
-    let carrier = carrier(&bank, &table, states, values)?;
-    for clip in clips(&bank, &table) {
-        let clip = clip?;
+    let (carrier, _) = root::carrier(&bank, clips(&table), states, values)?;
+    for index in clips(&table) {
+        let clip = clip(&bank, index)?;
         let root = Root::of(&clip.rig(), &[], carrier);
         let (needed, given) = (clip.rig().channels(), sampled.len());
         let sampled = sampled.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;

@@ -126,10 +126,15 @@ const HALF: i32 = i32::MIN;
 /// An eighth of a turn. If each of three angles is nearer than this, the other three that are the same rotation are farther.
 const NEAR: u32 = 1 << 29;
 
+/// Whether two angles are within an eighth of a turn.
+#[inline(always)]
+pub(crate) fn is_near(from: i32, to: i32) -> bool {
+    from.wrapping_sub(to).wrapping_add(NEAR as i32) as u32 <= 2 * NEAR
+}
+
 /// Writes to `from` what is the same rotation and nearest to `to`, a channel.
 pub(crate) fn nearest(shape: Shape, from: &mut [i32], to: &[i32]) {
     if let (&mut [a, b, c], &[x, y, z]) = (&mut *from, to) {
-        let is_near = |from: i32, to: i32| from.wrapping_sub(to).wrapping_add(NEAR as i32) as u32 <= 2 * NEAR;
         // Differences that wrap are those of angles, but not those of maps.
         let wraps = || [(a, x), (b, y), (c, z)].iter().any(|(from, to)| from.checked_sub(*to).is_none());
         if is_near(a, x) && is_near(b, y) && is_near(c, z) && !(shape == Shape::Map && wraps()) {

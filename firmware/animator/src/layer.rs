@@ -1,7 +1,7 @@
 //! Layers: another pose over the animator's, where a mask says, with a weight that moves in time.
 
 use crate::groups::{Group, Shape, nearest};
-use crate::mask::Mask;
+use crate::mask::{Mask, Run};
 use pantin::{FormRef, Pose, WrongForm};
 
 /// A weight of 0 to 1 in 2^-15.
@@ -27,9 +27,9 @@ impl Weight {
     /// A difference times the weight, rounded down; times 1 it is exact.
     #[inline(always)]
     pub(crate) fn of(self, difference: i32) -> i32 {
-        // The high half times 2^15 is below 2^31, and so is the low half's share.
-        let (high, low) = (difference >> 16, (difference & 0xffff) as u32);
-        ((high * i32::from(self.0)) << 1).wrapping_add(((low * u32::from(self.0)) >> 15) as i32)
+        // 17 bits times 2^15, and the share of the low bits, which is below 2^15.
+        let (high, low) = (difference >> 15, (difference & 0x7fff) as u32);
+        high.wrapping_mul(self.0.into()).wrapping_add(((low * u32::from(self.0)) >> 15) as i32)
     }
 }
 
@@ -89,30 +89,32 @@ pub fn blend(
     if weight == Weight::ZERO {
         return Ok(());
     }
-    for group in groups.iter().filter(|group| mask.contains(group.bit.into())) {
-        let range = group.range();
-        let (Some(own), Some(to)) = (pose.get_mut(range.clone()), layer.values.get(range)) else { continue };
-        mix_group(group.shape, own, to, weight);
+    if let Some(runs) = mask.runs(groups) {
+        mix_all(pose, runs, layer.values, weight);
+    } else {
+        mix_all(pose, groups.iter().filter(mask.picks()).map(Run::of_group), layer.values, weight);
     }
     Ok(())
 }
 
-/// Mixes the channels of a group.
+/// Mixes the channels of runs or groups.
 #[inline(always)]
-pub(crate) fn mix_group(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
-    // Three angles or a map, as most joints have, and near each other, as they are mostly: each is read once.
-    if let ([a, b, c], &[x, y, z]) = (&mut *own, to)
-        && shape != Shape::Quaternion
-    {
-        let (d, e, f) = (x.wrapping_sub(*a), y.wrapping_sub(*b), z.wrapping_sub(*c));
-        if shape == Shape::Free || weight == Weight::ONE || !(is_far(d) | is_far(e) | is_far(f)) {
-            *a = a.wrapping_add(weight.of(d));
-            *b = b.wrapping_add(weight.of(e));
-            *c = c.wrapping_add(weight.of(f));
-            return;
+pub(crate) fn mix_all(pose: &mut [i32], runs: impl Iterator<Item = Run>, to: &[i32], weight: Weight) {
+    // Of one length, which the compiler knows: one comparison for both.
+    let len = pose.len().min(to.len());
+    let (pose, to) = (pose.get_mut(..len).unwrap_or_default(), to.get(..len).unwrap_or_default());
+    for run in runs {
+        let (Some(own), Some(to)) = (pose.get_mut(run.range()), to.get(run.range())) else { continue };
+        if weight == Weight::ONE {
+            own.iter_mut().zip(to).for_each(|(own, to)| *own = *to);
+        } else {
+            match run.shape {
+                Shape::Free => mix_each(own, to, weight),
+                Shape::Quaternion => mix_far(run.shape, own, to, weight),
+                Shape::Euler | Shape::Map => mix_near(run.shape, own, to, weight),
+            }
         }
     }
-    mix_any(shape, own, to, weight);
 }
 
 /// A quarter turn.
@@ -124,18 +126,46 @@ fn is_far(difference: i32) -> bool {
     difference.wrapping_add(FAR as i32) as u32 > 2 * FAR
 }
 
-/// [`mix_group`] for any number of channels, however far. Of the pose's own channels what is the same rotation nearest to the layer's is taken, if
-/// they are far from them; at weight 1 nothing of them is left.
+/// Mixes groups of three angles, as most joints have, that are near to each other, as they are mostly.
 #[inline(never)]
-fn mix_any(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
-    if shape != Shape::Free && weight != Weight::ONE {
-        let far = |(own, to): (&i32, &i32)| is_far(to.wrapping_sub(*own));
-        if shape == Shape::Quaternion || own.iter().zip(to).any(far) {
-            nearest(shape, own, to);
+fn mix_near(shape: Shape, mut own: &mut [i32], mut to: &[i32], weight: Weight) {
+    // Chunks of three would be counted by a division.
+    while let (Some((group, own_rest)), Some((to_group, to_rest))) =
+        (own.split_first_chunk_mut::<3>(), to.split_first_chunk::<3>())
+    {
+        let ([a, b, c], &[x, y, z]) = (&mut *group, to_group);
+        let (d, e, f) = (x.wrapping_sub(*a), y.wrapping_sub(*b), z.wrapping_sub(*c));
+        // Where the highest two bits of a difference are not equal, it is a quarter turn or more.
+        if (d ^ d << 1) | (e ^ e << 1) | (f ^ f << 1) < 0 {
+            mix_far(shape, group, to_group, weight);
+        } else {
+            *a = a.wrapping_add(weight.of(d));
+            *b = b.wrapping_add(weight.of(e));
+            *c = c.wrapping_add(weight.of(f));
         }
+        (own, to) = (own_rest, to_rest);
     }
+}
+
+#[inline(always)]
+fn mix_each(own: &mut [i32], to: &[i32], weight: Weight) {
     for (own, to) in own.iter_mut().zip(to) {
         *own = own.wrapping_add(weight.of(to.wrapping_sub(*own)));
+    }
+}
+
+/// Mixes groups of rotations. Of the pose's own that are far from the layer's, what is the same rotation nearest to the layer's is taken.
+#[inline(never)]
+fn mix_far(shape: Shape, mut own: &mut [i32], mut to: &[i32], weight: Weight) {
+    let width = if shape == Shape::Quaternion { 4 } else { 3 };
+    while let (Some((group, own_rest)), Some((to_group, to_rest))) = (own.split_at_mut_checked(width), to.split_at_checked(width))
+    {
+        (own, to) = (own_rest, to_rest);
+        let far = |(own, to): (&i32, &i32)| is_far(to.wrapping_sub(*own));
+        if shape == Shape::Quaternion || group.iter().zip(to_group).any(far) {
+            nearest(shape, group, to_group);
+        }
+        mix_each(group, to_group, weight);
     }
 }
 

@@ -32,7 +32,7 @@ pub use crate::table::{
 use crate::track::Track;
 use crate::{Error, sync};
 use fixed::types::I16F16;
-use pantin::{Bank, Clip, OpenError};
+use pantin::{Bank, BankEntries, Clip, OpenError};
 
 /// What a machine remembers: less than 64 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -400,6 +400,29 @@ fn state_bit(state: u8) -> u64 {
 
 /// A clip of a bank.
 pub(crate) fn clip<'b>(bank: &Bank<'b>, index: u8) -> Result<Clip<'b>, Error> {
-    let entry = bank.entries().nth(index.into()).ok_or(Error::Clip(OpenError::NoSuchClip))?;
-    Ok(bank.open(&entry)?)
+    ClipWalk::new(bank).open(index)
+}
+
+/// Opens clips of a bank: those after the last one without a walk through those before it.
+pub(crate) struct ClipWalk<'b, 'p> {
+    bank: &'p Bank<'b>,
+    entries: BankEntries<'b>,
+    next: u16,
+}
+
+impl<'b, 'p> ClipWalk<'b, 'p> {
+    pub(crate) fn new(bank: &'p Bank<'b>) -> Self {
+        ClipWalk { bank, entries: bank.entries(), next: 0 }
+    }
+
+    #[inline(never)]
+    pub(crate) fn open(&mut self, index: u8) -> Result<Clip<'b>, Error> {
+        let index = u16::from(index);
+        if index < self.next {
+            *self = ClipWalk::new(self.bank);
+        }
+        let entry = self.entries.nth(usize::from(index - self.next));
+        self.next = index + 1;
+        Ok(self.bank.open(&entry.ok_or(Error::Clip(OpenError::NoSuchClip))?)?)
+    }
 }

@@ -1,6 +1,7 @@
 //! Which joints and scalars a layer moves: one bit each.
 
 use crate::error::{Error, Name};
+use crate::groups::{Group, Shape};
 use pantin::Rig;
 
 /// Joints of which [`Mask::set`] notes that they match, on its stack; those of larger rigs are looked up again.
@@ -10,25 +11,95 @@ const NOTED: usize = 256;
 #[derive(Debug)]
 pub struct Mask<'m> {
     words: &'m mut [u32],
+    /// Where [`Mask::prepare`] puts runs, of which `runs` are in use, for as many groups as `groups`.
+    spare: &'m mut [u32],
+    runs: u16,
+    groups: u16,
+}
+
+/// Channels one after the other that belong to groups of one shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    first: u16,
+    len: u8,
+    pub(crate) shape: Shape,
+}
+
+impl Run {
+    #[inline(always)]
+    pub(crate) fn of_group(group: &Group) -> Run {
+        Run { first: group.first, len: group.len, shape: group.shape }
+    }
+
+    fn to_word(self) -> u32 {
+        u32::from(self.first) | u32::from(self.len) << 16 | (self.shape as u32) << 24
+    }
+
+    #[inline(always)]
+    fn of_word(word: u32) -> Run {
+        let shape = match word >> 24 {
+            0 => Shape::Free,
+            1 => Shape::Euler,
+            2 => Shape::Map,
+            _ => Shape::Quaternion,
+        };
+        Run { first: word as u16, len: (word >> 16) as u8, shape }
+    }
+
+    #[inline(always)]
+    pub(crate) fn range(self) -> core::ops::Range<usize> {
+        usize::from(self.first)..usize::from(self.first) + usize::from(self.len)
+    }
 }
 
 impl<'m> Mask<'m> {
-    /// A mask of nothing. `words` needs an element for each 32 joints and scalars: [`Mask::words`].
+    /// A mask of nothing. `words` needs an element for each 32 joints and scalars: [`Mask::words`]. More of them serve [`Mask::prepare`].
     pub fn new(rig: &Rig<'_>, words: &'m mut [u32]) -> Result<Mask<'m>, Error> {
         let (needed, given) = (Mask::words(rig), words.len());
-        let words = words.get_mut(..needed).ok_or(Error::TooSmall { what: "words of a mask", needed, given })?;
-        words.fill(0);
-        Ok(Mask { words })
+        let mask = Mask::of_words(rig, words).ok_or(Error::TooSmall { what: "words of a mask", needed, given })?;
+        mask.words.fill(0);
+        Ok(mask)
     }
 
     /// A mask without memory.
     pub(crate) fn empty() -> Mask<'static> {
-        Mask { words: &mut [] }
+        Mask { words: &mut [], spare: &mut [], runs: 0, groups: 0 }
     }
 
     /// A mask of a rig that these words hold.
     pub(crate) fn of_words(rig: &Rig<'_>, words: &'m mut [u32]) -> Option<Mask<'m>> {
-        Some(Mask { words: words.get_mut(..Mask::words(rig))? })
+        let (words, spare) = words.split_at_mut_checked(Mask::words(rig))?;
+        Some(Mask { words, spare, runs: 0, groups: 0 })
+    }
+
+    /// Notes the channels that the mask picks of groups, in what [`Mask::new`] was lent beyond its needs: an element for each group is enough. A layer with
+    /// these groups is then mixed in fewer instructions, until the mask changes; call it again for groups of another form. Without room it stays as it is.
+    pub fn prepare(&mut self, groups: &[Group]) {
+        (self.runs, self.groups) = (0, 0);
+        let mut used = 0;
+        let mut last: Option<Run> = None;
+        for group in groups.iter().filter(|group| contains(self.words, group.bit.into())) {
+            let own = Run::of_group(group);
+            let joined = last.filter(|last| last.shape == own.shape && last.range().end == usize::from(own.first));
+            let run = match joined.and_then(|last| Some(Run { len: last.len.checked_add(own.len)?, ..last })) {
+                Some(run) => run,
+                None => {
+                    used += 1;
+                    own
+                }
+            };
+            let Some(place) = self.spare.get_mut(used - 1) else { return };
+            (*place, last) = (run.to_word(), Some(run));
+        }
+        // A rig has fewer groups than channels.
+        (self.runs, self.groups) = (used as u16, groups.len() as u16);
+    }
+
+    /// The runs of these groups; `None` if they were not prepared.
+    #[inline(always)]
+    pub(crate) fn runs(&self, groups: &[Group]) -> Option<impl Iterator<Item = Run> + '_> {
+        let runs = self.spare.get(..self.runs.into()).filter(|_| self.groups > 0 && usize::from(self.groups) == groups.len());
+        Some(runs?.iter().map(|word| Run::of_word(*word)))
     }
 
     /// The elements that a mask of a rig needs.
@@ -48,7 +119,7 @@ impl<'m> Mask<'m> {
         let mut found = false;
         // Joints that match or hang on one that does: a parent comes before its children.
         let mut hanging = [0; NOTED / 32];
-        let mut noted = Mask { words: &mut hanging };
+        let mut noted = Mask { words: &mut hanging, ..Mask::empty() };
         for (joint, index) in rig.joints().zip(0usize..) {
             let own = !joint.end_site && matches(pattern.as_bytes(), joint.name_bytes());
             let parent = joint.parent.filter(|_| below);
@@ -73,6 +144,7 @@ impl<'m> Mask<'m> {
 
     /// Turns every bit over: what this mask leaves to others.
     pub fn invert(&mut self) {
+        self.groups = 0;
         for word in self.words.iter_mut() {
             *word = !*word;
         }
@@ -81,16 +153,36 @@ impl<'m> Mask<'m> {
     /// Whether a joint (or, counted after the joints, a scalar) is in the mask.
     #[inline(always)]
     pub fn contains(&self, index: usize) -> bool {
-        self.words.get(index / 32).is_some_and(|word| word >> (index % 32) & 1 != 0)
+        contains(self.words, index)
+    }
+
+    /// Whether a group is in the mask, for one after the other: each word is read once.
+    #[inline(always)]
+    pub(crate) fn picks(&self) -> impl FnMut(&&Group) -> bool + '_ {
+        let (mut at, mut word) = (u16::MAX, 0);
+        move |group| {
+            let bit = group.bit;
+            if at != bit / 32 {
+                at = bit / 32;
+                word = self.words.get(usize::from(at)).copied().unwrap_or(0);
+            }
+            word >> (bit % 32) & 1 != 0
+        }
     }
 
     /// Adds or removes a joint, or, counted after the joints, a scalar.
     pub fn put(&mut self, index: usize, on: bool) {
+        self.groups = 0;
         if let Some(word) = self.words.get_mut(index / 32) {
             let bit = 1 << (index % 32);
             *word = if on { *word | bit } else { *word & !bit };
         }
     }
+}
+
+#[inline(always)]
+fn contains(words: &[u32], index: usize) -> bool {
+    words.get(index / 32).is_some_and(|word| word >> (index % 32) & 1 != 0)
 }
 
 /// Whether a joint or one above it matches, by a walk through the rig for each of them.

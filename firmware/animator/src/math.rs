@@ -6,19 +6,8 @@ use pantin::{Angle, Component, Kinds, Turn};
 /// A rotation as a unit quaternion w, x, y, z.
 pub(crate) type Unit = [Component; 4];
 
-/// The rotation `a`, then `b` about the axes that `a` has turned.
-pub(crate) fn product(a: Unit, b: Unit) -> Unit {
-    let ([aw, ax, ay, az], [bw, bx, by, bz]) = (a.map(Component::to_bits), b.map(Component::to_bits));
-    let times = |a: i32, b: i32| i64::from(a) * i64::from(b);
-    // Four products of components of unit quaternions sum to 2^60 at most.
-    let narrow = |q60: i64| Component::from_bits(((q60 + (1 << 29)) >> 30) as i32);
-    [
-        narrow(times(aw, bw) - times(ax, bx) - times(ay, by) - times(az, bz)),
-        narrow(times(aw, bx) + times(ax, bw) + times(ay, bz) - times(az, by)),
-        narrow(times(aw, by) - times(ax, bz) + times(ay, bw) + times(az, bx)),
-        narrow(times(aw, bz) + times(ax, by) - times(ay, bx) + times(az, bw)),
-    ]
-}
+/// No rotation.
+pub(crate) const NO_ROTATION: Unit = [Component::ONE, Component::ZERO, Component::ZERO, Component::ZERO];
 
 /// The exponential map of a unit quaternion, of at most half a turn.
 pub(crate) fn map_of(q: Unit) -> [i32; 3] {

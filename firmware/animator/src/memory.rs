@@ -65,7 +65,7 @@ pub struct LayerMemory<'m> {
     pub values: &'m mut [i32],
     /// An element for each channel of the rig.
     pub sampled: &'m mut [i32],
-    /// As [`crate::Mask::new`] says.
+    /// As [`crate::Mask::new`] says. With an element more for each run of channels that the layer moves, it is mixed in fewer instructions.
     pub words: &'m mut [u32],
 }
 

@@ -4,10 +4,13 @@
 //! difference of two places: sums over loops, reverse and seeks are exact by construction.
 
 use crate::Error;
-use crate::groups::Group;
-use crate::math;
+use crate::groups::{Group, Shape};
+use crate::machine::ClipWalk;
+use crate::math::{self, NO_ROTATION, Unit};
 use fixed::types::I48F16;
-use pantin::{Angle, ChannelState, Clip, EulerOrder, JointRef, Kind, Matrix, Player, Pose, Rig, Turn};
+use pantin::{
+    Angle, Bank, ChannelState, Clip, Component, DetachedPlayer, EulerOrder, JointRef, Kind, Matrix, Player, Pose, Rig, Turn,
+};
 
 /// Where a figure is in the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -151,16 +154,19 @@ fn has_positions(mut kinds: pantin::Kinds<'_>) -> bool {
 }
 
 /// The carrier of a figure that plays several clips: the first joint with positions that moves in one of them. Captures often hang on a joint that
-/// stands still at the origin; where one above the carrier is turned, it stays the carrier. `states` and `values` are memory for each of the clips.
+/// stands still at the origin; where one above the carrier is turned, it stays the carrier. `states` and `values` are memory for each of the clips,
+/// which are those of these indices; the index and the player of the one that is in it then are returned too.
 pub(crate) fn carrier<'a>(
-    clips: impl Iterator<Item = Result<Clip<'a>, Error>>,
+    bank: &Bank<'a>,
+    clips: impl Iterator<Item = u8>,
     states: &mut [ChannelState],
     values: &mut [i32],
-) -> Result<usize, Error> {
+) -> Result<(usize, Option<(u8, DetachedPlayer<'a>)>), Error> {
     let (mut first, mut carrier, mut upright) = (0, usize::MAX, usize::MAX);
-    let mut found = false;
-    for clip in clips {
-        let clip = clip?;
+    let (mut found, mut last) = (false, None);
+    let mut walk = ClipWalk::new(bank);
+    for at in clips {
+        let clip = walk.open(at)?;
         let rig = clip.rig();
         // Then a player would neither change the carrier nor lack memory, but for a key clip, which may be refused where it is entered.
         if found && rig.channels() <= states.len().min(values.len()) {
@@ -184,8 +190,9 @@ pub(crate) fn carrier<'a>(
                 upright = upright.min(index);
             }
         }
+        last = Some((at, player.detach()));
     }
-    Ok(if carrier == usize::MAX || upright < carrier { first } else { carrier })
+    Ok((if carrier == usize::MAX || upright < carrier { first } else { carrier }, last))
 }
 
 /// The root at one instant.
@@ -230,39 +237,78 @@ impl<'a> Root<'a> {
         }
     }
 
-    pub(crate) fn yaw_of(&self, pose: &Pose<'_>) -> Angle {
-        let [yaw, ..] = self.matrix(pose).euler(self.order);
-        yaw
+    /// Whether its group of channels is all that turns it.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.turns.shape != Shape::Free
+            && self.joint.kinds().filter(|kind| !kind.is_position()).count() == usize::from(self.turns.len)
     }
 
-    fn matrix(&self, pose: &Pose<'_>) -> Matrix {
-        pose.turn(&self.joint).map_or(Matrix::IDENTITY, Turn::matrix)
+    /// How a pose turns it.
+    pub(crate) fn turn_in(&self, pose: &Pose<'_>) -> Unit {
+        pose.turn(&self.joint).map_or(NO_ROTATION, Turn::quaternion)
+    }
+
+    /// The yaw of a rotation.
+    #[inline(never)]
+    pub(crate) fn yaw_of(&self, turned: Unit) -> Angle {
+        Matrix::of_quaternion(turned).first_angle(self.order)
     }
 
     /// The yaw of values of the channels that turn it; `None` if they are fewer than a whole rotation.
     pub(crate) fn yaw_of_turns(&self, own: &[i32]) -> Option<Angle> {
-        let [yaw, ..] = math::turn_of(self.turns.shape, self.joint.kinds(), own)?.matrix().euler(self.order);
-        Some(yaw)
+        Some(self.yaw_of(math::turn_of(self.turns.shape, self.joint.kinds(), own)?.quaternion()))
+    }
+
+    /// What turns the root about the vertical axis.
+    pub(crate) fn yaw_by(&self, angle: Angle) -> Yaw {
+        // An arithmetic shift halves the angle of -1/2 to 1/2 turn.
+        Yaw { angle, half: Heading::new(Angle::from_bits(angle.to_bits() >> 1)) }
     }
 
     /// Turns the root about the vertical axis, in its channels `own`; one that has up to two angles keeps them, but for one that turns about
-    /// the vertical axis first.
-    pub(crate) fn turn_by(&self, angle: Angle, own: &mut [i32]) {
-        if angle == Angle::ZERO {
+    /// the vertical axis first. `turned` is the rotation that the channels are, if it is known.
+    #[inline(never)]
+    pub(crate) fn turn_by(&self, yaw: &Yaw, own: &mut [i32], turned: Option<Unit>) {
+        if yaw.angle == Angle::ZERO {
             return;
         }
-        let Some(turn) = math::turn_of(self.turns.shape, self.joint.kinds(), own) else {
+        let turned = turned.or_else(|| math::turn_of(self.turns.shape, self.joint.kinds(), own).map(Turn::quaternion));
+        let Some(turned) = turned else {
             let first = self.joint.kinds().find(|kind| !kind.is_position());
             if first.is_some_and(|kind| kind.is_rotation() && kind.axis() == Some(self.axis as usize))
                 && let Some(value) = own.first_mut()
             {
-                *value = value.wrapping_add(angle.to_bits());
+                *value = value.wrapping_add(yaw.angle.to_bits());
             }
             return;
         };
-        let about = Turn::Euler { order: self.order, angles: [angle, Angle::ZERO, Angle::ZERO] };
-        let turned = math::product(about.quaternion(), turn.quaternion());
-        math::write(self.turns.shape, self.joint.kinds(), turned, own);
+        math::write(self.turns.shape, self.joint.kinds(), yaw.turn(turned, self.up()), own);
+    }
+}
+
+/// A turn about the vertical axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Yaw {
+    angle: Angle,
+    half: Heading,
+}
+
+impl Yaw {
+    /// The turn after a rotation. The product of the quaternions, of which one has two components, is that of two plane vectors.
+    fn turn(&self, [w, x, y, z]: Unit, up: usize) -> Unit {
+        let (own, a, b) = match up {
+            0 => (x, y, z),
+            1 => (y, z, x),
+            _ => (z, x, y),
+        };
+        let rotate =
+            |pair: [Component; 2]| self.half.rotate(pair.map(Component::to_bits)).map(|x| Component::from_bits(x as i32));
+        let ([w, own], [a, b]) = (rotate([w, own]), rotate([a, b]));
+        match up {
+            0 => [w, own, a, b],
+            1 => [w, b, own, a],
+            _ => [w, a, b, own],
+        }
     }
 }
 
@@ -307,17 +353,16 @@ pub(crate) struct Travel {
     /// Where the figure was when the clip was started, and what its heading is beside the pose's.
     pub(crate) anchor: [i64; 2],
     pub(crate) heading: Heading,
-    /// The root's place in the clip that stands at the anchor.
+    /// The root's place in the clip that stands at the anchor, less where the laps since then lead, in the clip's axes.
     pub(crate) origin: [i64; 2],
-    /// Laps since then, what they turn by, and where they lead, in the clip's axes.
+    /// These laps, and what they turn by.
     laps: i32,
     lap_heading: Heading,
-    lap_place: [i64; 2],
 }
 
 impl Travel {
     pub(crate) const NONE: Travel =
-        Travel { anchor: [0; 2], heading: Heading::ZERO, origin: [0; 2], laps: 0, lap_heading: Heading::ZERO, lap_place: [0; 2] };
+        Travel { anchor: [0; 2], heading: Heading::ZERO, origin: [0; 2], laps: 0, lap_heading: Heading::ZERO };
 
     /// Starts at a placement with a clip whose root is at `origin`.
     pub(crate) fn new(from: Placement, origin: [i64; 2]) -> Travel {
@@ -335,8 +380,8 @@ impl Travel {
                 self.lap_heading = Heading::new(Angle::from_bits(seam.yaw.to_bits().wrapping_mul(self.laps)));
             }
             let way = self.lap_heading.rotate_wide(seam.place);
-            for (sum, way) in self.lap_place.iter_mut().zip(way) {
-                *sum = sum.wrapping_add(if laps < 0 { -way } else { way });
+            for (origin, way) in self.origin.iter_mut().zip(way) {
+                *origin = origin.wrapping_sub(if laps < 0 { -way } else { way });
             }
             if laps > 0 {
                 self.laps = self.laps.wrapping_add(1);
@@ -348,15 +393,17 @@ impl Travel {
     }
 
     /// The placement of a root that is at a place of its clip.
-    pub(crate) fn placement(&self, place: [i32; 2], seam: Option<Seam>) -> Placement {
-        // About the place where the loop begins, which is where a lap's turn happens.
-        let first = seam.map_or([0; 2], |seam| seam.first);
-        let ([x, y], [first_x, first_y]) = (place.map(i64::from), first.map(i64::from));
-        let [turned_x, turned_y] = self.lap_heading.rotate_wide([x - first_x, y - first_y]);
-        let ([lap_x, lap_y], [origin_x, origin_y]) = (self.lap_place, self.origin);
-        let x = turned_x.wrapping_add(first_x).wrapping_add(lap_x).wrapping_sub(origin_x);
-        let y = turned_y.wrapping_add(first_y).wrapping_add(lap_y).wrapping_sub(origin_y);
-        let [x, y] = self.heading.rotate_wide([x, y]);
+    pub(crate) fn placement(&self, place: [i32; 2], seam: Option<&Seam>) -> Placement {
+        let [x, y] = place;
+        let mut turned = [i64::from(x), i64::from(y)];
+        if let (Some(seam), true) = (seam, self.lap_heading.angle != Angle::ZERO) {
+            // About the place where the loop begins, which is where a lap's turn happens.
+            let ([x, y], [first_x, first_y]) = (turned, seam.first.map(i64::from));
+            let [x, y] = self.lap_heading.rotate_wide([x - first_x, y - first_y]);
+            turned = [x.wrapping_add(first_x), y.wrapping_add(first_y)];
+        }
+        let ([x, y], [origin_x, origin_y]) = (turned, self.origin);
+        let [x, y] = self.heading.rotate_wide([x.wrapping_sub(origin_x), y.wrapping_sub(origin_y)]);
         let [anchor_x, anchor_y] = self.anchor;
         Placement {
             place: [anchor_x.wrapping_add(x), anchor_y.wrapping_add(y)],

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::animator::Animator;
 use crate::groups::{self, Group, Shape, nearest};
-use crate::math;
+use crate::math::{self, Unit};
 use crate::root::{Heading, Placement, Root, Travel};
 use crate::transition::{Cubic, Offset, Transition};
 use fixed::types::I16F16;
@@ -24,14 +24,16 @@ impl<'a> Animator<'a, '_> {
         }
         self.leave_carried();
         let mut placement = self.placement();
-        let yaw_before = self.root.yaw_of(&self.pose());
+        let (converts, frames) = (old_form != new_form, transition.frames());
+        let turned_before = self.root.turn_in(&self.pose());
+        let yaw_before = self.root.yaw_of(turned_before);
         self.take_motion(&clip);
         if let Err(error) = self.track.start(clip, frame, speed) {
             self.left = 0;
             self.compose();
             return Err(error);
         }
-        if old_form != new_form {
+        if converts {
             self.convert(old_form, new_form)?;
             let shift = i32::from(old_form.length_exponent()) - i32::from(new_form.length_exponent());
             let shifted =
@@ -40,10 +42,13 @@ impl<'a> Animator<'a, '_> {
             self.before.place = self.before.place.map(shifted);
         }
         // The new clip's heading stands where the old one's stood.
-        let turned = yaw_before - self.root.yaw_of(&self.track.pose());
-        self.turn_motion(-turned);
-        self.difference(transition);
-        self.start_transition(transition.frames());
+        let turned = yaw_before - self.root.yaw_of(self.root.turn_in(&self.track.pose()));
+        if frames > 0 {
+            let known = (!converts && self.root.is_whole()).then_some(turned_before);
+            self.turn_motion(-turned, known);
+            self.difference(transition);
+        }
+        self.start_transition(frames);
         self.events.at(self.track.clip(), self.track.frame());
         self.compose();
         let now = Placement { heading: placement.heading + turned, ..placement };
@@ -85,7 +90,8 @@ impl<'a> Animator<'a, '_> {
     fn take_motion(&mut self, clip: &Clip<'a>) {
         // How much of a frame of the old clip passes in one of the new, in 2^-16.
         let (old, new) = (self.track.clip().frame_time_ns(), clip.frame_time_ns());
-        let ratio = (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64;
+        let ratio =
+            if new == old { 1 << 16 } else { (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64 };
         self.track.leave_offsets();
         let running = self.left > 0;
         for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
@@ -100,14 +106,14 @@ impl<'a> Animator<'a, '_> {
         }
     }
 
-    /// Turns the root in the kept poses, and its horizontal velocity.
-    fn turn_motion(&mut self, by: Angle) {
+    /// Turns the root in the kept poses, and its horizontal velocity. `known` is its rotation in the pose of this instant, if that is known.
+    fn turn_motion(&mut self, by: Angle, known: Option<Unit>) {
         let first = usize::from(self.root.turns.first);
         let channels = first..first + usize::from(self.root.turns.len);
-        let root = &self.root;
+        let (root, yaw) = (&self.root, self.root.yaw_by(by));
         change(self.offsets.get_mut(channels).unwrap_or_default(), |here, next| {
-            root.turn_by(by, here);
-            root.turn_by(by, next);
+            root.turn_by(&yaw, here, known);
+            root.turn_by(&yaw, next, None);
         });
         let [Some(a), Some(b)] = self.root.place.map(|channel| channel.map(usize::from)) else { return };
         let of = |offsets: &[Offset], at: usize| offsets.get(at).map_or(0, |offset| offset.v.wrapping_sub(offset.d));
@@ -125,6 +131,9 @@ impl<'a> Animator<'a, '_> {
         let groups = self.groups.get(..self.used_groups).unwrap_or_default();
         for group in groups.iter().filter(|group| group.shape != Shape::Free) {
             let (Some(own), Some(to)) = (self.offsets.get_mut(group.range()), values.get(group.range())) else { continue };
+            if is_near(group.shape, own, to) {
+                continue;
+            }
             change(own, |here, next| {
                 nearest(group.shape, here, to);
                 nearest(group.shape, next, here);
@@ -154,8 +163,7 @@ impl<'a> Animator<'a, '_> {
                 offset.coast(frames);
             }
         }
-        let cubic = Cubic::new(frames);
-        self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
+        Cubic::new(frames).solve_all(self.offsets);
     }
 
     /// Brings the kept poses from one form to another.
@@ -218,6 +226,16 @@ fn change(offsets: &mut [Offset], with: impl FnOnce(&mut [i32], &mut [i32])) {
     for ((here, next), own) in here.iter().zip(&next).zip(offsets) {
         (own.d, own.v) = (*here, *next);
     }
+}
+
+/// Whether the kept poses of a group are as near to a clip's pose as [`nearest`] could bring them, as they are mostly.
+#[inline(always)]
+fn is_near(shape: Shape, own: &[Offset], to: &[i32]) -> bool {
+    let (&[a, b, c], &[x, y, z]) = (own, to) else { return false };
+    let near = |own: Offset, to: i32| groups::is_near(own.d, to) & groups::is_near(own.v, own.d);
+    // Maps do not wrap.
+    let wraps = |own: Offset, to: i32| own.d.checked_sub(to).is_none() | own.v.checked_sub(own.d).is_none();
+    near(a, x) && near(b, y) && near(c, z) && !(shape == Shape::Map && (wraps(a, x) | wraps(b, y) | wraps(c, z)))
 }
 
 /// A velocity times a factor in 2^-16.

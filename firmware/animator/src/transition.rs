@@ -69,29 +69,43 @@ impl Offset {
     }
 }
 
-/// A positive fraction below 2^30 as a product and a shift.
+/// A positive fraction of 1 at most as a product and a shift.
 #[derive(Clone, Copy, Debug)]
 struct Ratio {
-    /// 2^29 to 2^30.
-    factor: i32,
+    /// 2^29 to 2^30, not included.
+    factor: u32,
     shift: u32,
 }
 
 impl Ratio {
+    const ONE: Ratio = Ratio { factor: 1 << 29, shift: 29 };
+
     /// `over` is at most 12, `under` below 2^25 and not below `over`.
     fn new(over: u32, under: u32) -> Ratio {
-        let under = u64::from(under.max(1));
-        let mut shift = 29;
-        while shift < 58 && (u64::from(over) << shift) < under << 29 {
-            shift += 1;
+        let under = under.max(1);
+        let (mut rest, mut shift) = (over, 29);
+        while shift < 58 && rest < under {
+            (rest, shift) = (rest << 1, shift + 1);
         }
-        Ratio { factor: (u64::from(over) << shift).checked_div(under).unwrap_or(0) as i32, shift }
+        // What is divided is below twice the divisor: the first digit is 1, and 29 follow.
+        let mut factor = 0;
+        for _ in 0..30 {
+            let digit = u32::from(rest >= under);
+            factor = factor << 1 | digit;
+            rest = rest.wrapping_sub(under * digit) << 1;
+        }
+        Ratio { factor, shift }
     }
 
     #[inline(always)]
     fn of(self, x: i32) -> i32 {
         // Below 2^61.
-        ((i64::from(x) * i64::from(self.factor)) >> self.shift) as i32
+        let product = i64::from(x) * i64::from(self.factor);
+        // A shift of 64 bits is a call where there are no instructions for it.
+        match self.shift.checked_sub(32) {
+            Some(shift) => ((product >> 32) as i32) >> shift.min(31),
+            None => (product >> self.shift) as i32,
+        }
     }
 }
 
@@ -113,15 +127,28 @@ pub(crate) const AGAIN: [u8; 3] = [2, 32, 128];
 
 impl Cubic {
     pub(crate) fn new(frames: u8) -> Cubic {
-        let n = u32::from(frames.max(3));
+        // Fewer frames need no ratios.
+        if frames < 3 {
+            return Cubic { frames, of_d: Ratio::ONE, of_v: Ratio::ONE, inverse: Ratio::ONE };
+        }
+        let n = u32::from(frames);
         Cubic { frames, of_d: Ratio::new(12, n * (n * n - 1)), of_v: Ratio::new(6, n * (n - 1)), inverse: Ratio::new(1, n) }
     }
 
+    /// Sets acceleration and slope of all offsets by their differences and velocities: those of zero ones too, what is left of whose acceleration would
+    /// lead away again.
+    pub(crate) fn solve_all(&self, offsets: &mut [Offset]) {
+        for offset in offsets.iter_mut().filter(|offset| **offset != Offset::ZERO) {
+            self.solve(offset);
+        }
+    }
+
     /// Sets acceleration and slope by difference and velocity.
+    #[inline(never)]
     pub(crate) fn solve(&self, offset: &mut Offset) {
         let Offset { d, v, .. } = *offset;
         if offset.is_zero() {
-            // What the cubic gives, without its products: as in many channels of a pose.
+            // What the cubic gives, without its products.
             *offset = Offset::ZERO;
             return;
         }
@@ -134,8 +161,10 @@ impl Cubic {
             }
             n => {
                 let k = self.of_d.of(d).wrapping_add(self.of_v.of(v));
-                let half = (i64::from(k) * i64::from(n - 1)) >> 1;
-                (offset.w, offset.k) = ((-i64::from(self.inverse.of(v)) - half) as i32, k);
+                // (n - 1) k / 2, rounded down, in products of 32 bits.
+                let (n, odd) = (i32::from(n) - 1, k & 1);
+                let half = (k >> 1).wrapping_mul(n).wrapping_add((odd * n) >> 1);
+                (offset.w, offset.k) = (self.inverse.of(v).wrapping_neg().wrapping_sub(half), k);
             }
         }
     }

@@ -43,6 +43,15 @@ fn a_mask_and_its_complement_are_the_whole() {
         blend(&mut halves, groups, clip.form_ref(), layer, &rest, weight).unwrap();
         blend(&mut whole, groups, clip.form_ref(), layer, &all, weight).unwrap();
         assert_eq!(halves, whole);
+        // Runs of channels give what groups do.
+        let mut room = [0; 4 + 64];
+        let mut prepared = Mask::new(&clip.rig(), &mut room).unwrap();
+        (0..clip.rig().joint_count()).for_each(|joint| prepared.put(joint, mask.contains(joint)));
+        prepared.prepare(groups);
+        let (mut by_groups, mut by_runs) = (base.clone(), base.clone());
+        blend(&mut by_groups, groups, clip.form_ref(), layer, &mask, weight).unwrap();
+        blend(&mut by_runs, groups, clip.form_ref(), layer, &prepared, weight).unwrap();
+        assert_eq!(by_runs, by_groups);
         if weight == Weight::ONE {
             assert_eq!(whole, layer.values);
         }

@@ -142,7 +142,8 @@ impl Rotation {
     pub fn euler(&self, [i, j, k]: [usize; 3]) -> [i32; 3] {
         let Rotation(columns) = self;
         let at = |row: usize, column: usize| columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0);
-        let sign = if (i + 1) % 3 == j { 1 } else { -1 };
+        // Where there is no division, a remainder is a call.
+        let sign = if matches!((i, j), (0, 1) | (1, 2) | (2, 0)) { 1 } else { -1 };
         let narrow = |q30: i32| q30 >> FRACTION_BITS;
         // Its length is the second angle's cosine; the others are unit vectors.
         let c = direction([at(i, i), -sign * at(i, j), 0]).map_or(0, |([x, y, _], _)| angle_of_unit(y, x));

@@ -97,7 +97,10 @@ impl<'a> Table<'a> {
             }
         }
         let cause = |index: usize| self.transition(index).map(|row| row.cause);
-        let repeats = |index: usize| (usize::from(first)..index).any(|before| cause(before) == cause(index));
+        let repeats = |index: usize| {
+            let own = cause(index);
+            (usize::from(first)..index).any(|before| cause(before) == own)
+        };
         if (usize::from(first)..end).any(repeats) { Err(TableError::Ambiguous { state }) } else { Ok(()) }
     }
 

@@ -95,7 +95,7 @@ fn update(animator: &mut Animator) {
 fn layered(clip: Clip<'static>) {
     let (mut states, mut values) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS]);
     let (mut other_states, mut other_values) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS]);
-    let (mut pose, mut words) = ([0; CHANNELS], [0; 8]);
+    let (mut pose, mut words) = ([0; CHANNELS], [0; 8 + CHANNELS]);
     let mut groups = [pantin_animator::Group::NONE; CHANNELS];
     let Ok(used) = pantin_animator::Group::of_clip(&clip, &mut groups) else { panic!() };
     let groups = groups.get(..used).unwrap_or_default();
@@ -108,6 +108,8 @@ fn layered(clip: Clip<'static>) {
     for joint in (0..clip.rig().joint_count()).step_by(2) {
         mask.put(joint, true);
     }
+    mask.prepare(groups);
+    let weight = black_box(Weight::from_bits(1 << 14));
     base.seek(start(&clip));
     layer.seek(start(&clip) + 5);
     for _ in 0..FRAMES {
@@ -115,12 +117,12 @@ fn layered(clip: Clip<'static>) {
         base.step_frame();
         base.sample(&mut pose);
         layer.step_frame();
-        let mixed = blend(&mut pose, groups, clip.form_ref(), layer.pose(), &mask, Weight::from_bits(1 << 14));
+        let mixed = blend(&mut pose, groups, clip.form_ref(), layer.pose(), &mask, weight);
         markers::stop();
         assert!(mixed.is_ok());
     }
     markers::start();
-    let added = add(&mut pose, groups, clip.form_ref(), layer.pose(), base.pose().values, &mask, Weight::from_bits(1 << 14));
+    let added = add(&mut pose, groups, clip.form_ref(), layer.pose(), base.pose().values, &mask, weight);
     markers::stop();
     assert!(added.is_ok());
     black_box(&pose);
