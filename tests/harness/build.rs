@@ -36,9 +36,10 @@ impl Firmware {
         Self::built("steer", package, package, target, &[], (vec![], vec![variable]))
     }
 
-    /// Builds a program to give away: without a log for debug probes, and without paths of this machine. It is built in a folder of its own.
+    /// Builds a program to give away: without a log for debug probes, and without paths of this machine.
     pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
-        let mut flags = vec![];
+        // As a flag, not as a setting of the profile: macros and build scripts are those of other builds then.
+        let mut flags = vec!["-Cstrip=debuginfo".to_owned()];
         let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cargo"));
         let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from).or(home);
         let sources = cargo.map(|cargo| (cargo.join("registry/src"), "crates".into()));
@@ -46,10 +47,8 @@ impl Firmware {
         for (from, to) in sources.into_iter().chain([(paths::root(), "pantin".into()), rust_sources()?]) {
             flags.push(format!("--remap-path-prefix={}={to}", from.display()));
         }
-        let folder =
-            paths::firmware().join("target").join(if setup::is_from_source(target) { "released-core" } else { "released" });
-        let arguments = ["--locked", "--no-default-features", "--config", "profile.release.strip='debuginfo'"];
-        let environment = [("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into()), ("CARGO_TARGET_DIR", folder.into_os_string())];
+        let arguments = ["--locked", "--no-default-features"];
+        let environment = [("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into())];
         let settings = (arguments.map(OsString::from).into(), environment.map(|(name, value)| (name.into(), value)).into());
         Self::built(features, package, program, target, clips, settings)
     }

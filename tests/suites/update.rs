@@ -20,6 +20,7 @@ use harness::update::{line, request, requests, send};
 use harness::{clips, paths, screen, setup, simulator};
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
+use pantin::OpenError;
 use pantin_figure::rotation::Rotation;
 use pantin_line::update::{self, RetryPolicy, image};
 use pantin_store::region::{REGIONS, Region};
@@ -50,7 +51,11 @@ struct Film {
 
 impl Film {
     fn of(path: PathBuf) -> Film {
-        let (bytes, info) = board_clip::read(&path, &board_clip::Sent::default()).unwrap();
+        Film::sent(path, &board_clip::Sent::default())
+    }
+
+    fn sent(path: PathBuf, how: &board_clip::Sent) -> Film {
+        let (bytes, info) = board_clip::read(&path, how).unwrap();
         let keys = [&b""[..]; PICTURES - 1];
         let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
         Film { bytes, info, path, pictures }
@@ -227,6 +232,37 @@ fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
     session.send(b"n").unwrap();
     session.step(&[]).unwrap();
     session.end().unwrap();
+}
+
+/// Authored motion goes over the line as its keys, which are fewer bytes than its segments, and plays once it is there.
+#[test]
+fn a_key_clip_comes_over_the_line_whole() {
+    let Some(bench) = bench("a key clip over the line") else { return };
+    let path = bench.file("keys.ptn");
+    let walk = paths::root().join("motions/walk.keys");
+    let mut tool = Command::new(build::host_tool().unwrap());
+    assert!(tool.args(["convert", "--keys"]).arg(&walk).arg("-o").arg(&path).status().unwrap().success());
+    let segments = Film::of(path.clone());
+    let mut how = board_clip::Sent::default();
+    how.keys = true;
+    let keys = Film::sent(path, &how);
+    let [few, many] = [&keys, &segments]
+        .map(|film| requests(&film.bytes, &film.info).iter().map(|message| line(message).unwrap().len()).sum::<usize>());
+    println!("{few} bytes over the line as keys, {many} as segments");
+    assert!(few < many);
+    let built_in = &bench.built_in;
+    let firmware = Firmware::featuring("update,keys", MICROBIT.name, MICROBIT.name, MICROBIT.target, &[&built_in.path]).unwrap();
+    let launch = Launch::new(MICROBIT, firmware.elf()).display().limit(Duration::from_secs(90));
+    let mut session = Session::start(launch).unwrap();
+    shows(&mut session, built_in, "a new board");
+    assert_eq!(send(&mut session, &keys.bytes, &keys.info).unwrap(), keys.done());
+    session.begins();
+    shows(&mut session, &keys, "the keys");
+    session.reset().unwrap();
+    shows(&mut session, &keys, "the keys after a reset");
+    // Firmware without the feature refuses them, and says why.
+    let refusal = Refusal::Clip(OpenError::UnsupportedVersion(2));
+    assert_eq!(send(&mut bench.start(), &keys.bytes, &keys.info).unwrap(), Response::Refused { id: keys.info.crc, refusal });
 }
 
 #[test]

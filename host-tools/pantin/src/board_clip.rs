@@ -37,7 +37,7 @@ pub struct Sent {
     /// Send a key clip as it is, for firmware that is built with feature `keys`. Without this option it becomes a clip of segments, which all
     /// firmware plays and which takes more bytes
     #[arg(long)]
-    keys: bool,
+    pub keys: bool,
 }
 
 /// Reads a clip for a board, one that holds its rig, or a bank. Without a name it is called as its file, as far as a board keeps that.
