@@ -426,6 +426,19 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_first_angle_is_that_of_all_three() {
+        let mut random = fastrand::Rng::with_seed(3);
+        for order in EulerOrder::ALL {
+            for _ in 0..if cfg!(miri) { 3 } else { 1000 } {
+                let turn = Turn::Quaternion([(); 4].map(|()| Component::from_bits(random.i32(..))));
+                let matrix = super::Matrix::of_quaternion(turn.quaternion());
+                assert_eq!(matrix, turn.matrix());
+                assert_eq!(matrix.first_angle(order), matrix.euler(order)[0]);
+            }
+        }
+    }
+
     fn radians(angle: Angle) -> f64 {
         f64::from(angle.to_bits()) / 4_294_967_296.0 * std::f64::consts::TAU
     }

@@ -95,7 +95,7 @@ impl Animator<'_, '_> {
         if self.left == 0 {
             self.drop_carried();
         } else if frames > 0 && AGAIN.contains(&self.left) {
-            if rest_ns == 0 {
+            if rest_ns == 0 && !carried.others {
                 self.solve_carried(carried);
             } else {
                 self.leave_carried();
@@ -115,28 +115,22 @@ impl Animator<'_, '_> {
         lasts && !solved && self.track.frame() + u32::from(frames) + 1 < self.track.clip().frames()
     }
 
-    /// Solves the cubics again where carried offsets stand on a frame: their accelerations and slopes change, in the states too.
+    /// Solves the cubics again where carried offsets, all of moving channels, stand on a frame: their accelerations and slopes change, in the states too.
     #[inline(never)]
     fn solve_carried(&mut self, carried: Carried) {
         let cubic = Cubic::new(self.left);
-        let states = self.track.moving().map_or(&mut [][..], |(states, _)| states);
-        let mut states = states.iter_mut().peekable();
-        for (slot, offset) in self.offsets.iter_mut().enumerate() {
-            let state = states.next_if(|state| state.slot() == slot);
-            if *offset == Offset::ZERO {
-                continue;
-            }
+        let Some((states, _)) = self.track.moving() else { return };
+        for state in states {
+            let Some(offset) = self.offsets.get_mut(state.slot()).filter(|offset| **offset != Offset::ZERO) else { continue };
             let was = offset.after(carried.frames);
             *offset = was;
             cubic.solve(offset);
-            if let Some(state) = state {
-                add(state, 1, [0, offset.w.wrapping_sub(was.w), offset.k.wrapping_sub(was.k)]);
-            }
+            add(state, 1, [0, offset.w.wrapping_sub(was.w), offset.k.wrapping_sub(was.k)]);
         }
         self.carried = Some(Carried { frames: 0, ..carried });
     }
 
-    /// At the end of a transition, where differences and velocities are 0: takes what is left out of the states.
+    /// At the end of a transition, where differences and velocities are 0: takes what is left out of the states. The offsets mean nothing then.
     #[inline(never)]
     fn drop_carried(&mut self) {
         let Some(Carried { frames, .. }) = self.carried.take() else { return };
@@ -145,7 +139,6 @@ impl Animator<'_, '_> {
             let Some(&Offset { w, k, .. }) = self.offsets.get(state.slot()) else { continue };
             add(state, -1, [0, w.wrapping_add(k.wrapping_mul(frames.into())), k]);
         }
-        self.offsets.fill(Offset::ZERO);
     }
 
     /// Puts the offsets into the states unless they are there; `None` for a clip whose channels follow others, or which has keys.
