@@ -238,14 +238,12 @@ fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
 #[test]
 fn a_key_clip_comes_over_the_line_whole() {
     let Some(bench) = bench("a key clip over the line") else { return };
-    let path = bench.file("keys.ptn");
+    let path = bench.folder.path().join("keys.ptn");
     let walk = paths::root().join("motions/walk.keys");
     let mut tool = Command::new(build::host_tool().unwrap());
     assert!(tool.args(["convert", "--keys"]).arg(&walk).arg("-o").arg(&path).status().unwrap().success());
     let segments = Film::of(path.clone());
-    let mut how = board_clip::Sent::default();
-    how.keys = true;
-    let keys = Film::sent(path, &how);
+    let keys = Film::sent(path, &board_clip::Sent { keys: true, ..board_clip::Sent::default() });
     let [few, many] = [&keys, &segments]
         .map(|film| requests(&film.bytes, &film.info).iter().map(|message| line(message).unwrap().len()).sum::<usize>());
     println!("{few} bytes over the line as keys, {many} as segments");

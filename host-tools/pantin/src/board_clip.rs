@@ -33,7 +33,7 @@ pub fn board_name(text: &str) -> Result<String, String> {
 pub struct Sent {
     /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
     #[arg(long, value_parser = board_name)]
-    name: Option<String>,
+    pub name: Option<String>,
     /// Send a key clip as it is, for firmware that is built with feature `keys`. Without this option it becomes a clip of segments, which all
     /// firmware plays and which takes more bytes
     #[arg(long)]
