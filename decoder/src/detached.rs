@@ -34,8 +34,8 @@ impl<'a> Player<'a, '_> {
 }
 
 impl<'a> DetachedPlayer<'a> {
-    /// A player of a clip that has not begun, which takes no time to make: its memory holds nothing of it, and before it plays, [`Player::new`] has to
-    /// take its place. `None` if this many states are perhaps too few.
+    /// A player of a clip that has not begun: it is made in constant time and reads no starts. Before the clip plays, a player of [`Player::new`] has to take
+    /// its place. `None` if the clip may need more states than these.
     pub fn idle(clip: Clip<'a>, states: usize) -> Option<DetachedPlayer<'a>> {
         #[cfg(feature = "keys")]
         let most = if clip.has_keys() { clip.moving() } else { clip.rig().channels() };

@@ -240,7 +240,7 @@ impl Id {
     }
 }
 
-/// Walks the channels of a pose. Of the rig's bytes it reads what a channel needs, for each start of a clip walks through all of them.
+/// Walks the channels of a pose. It reads only what a channel needs of the rig's bytes, because each start of a clip walks through all of them.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelIter<'a> {
     reader: Reader<'a>,

@@ -73,7 +73,7 @@ def test_a_joint_that_is_not_there_is_named(vectors):
             read("nobody")
 
 
-def test_a_name_that_is_alike_is_suggested(walk):
+def test_a_similar_name_is_suggested(walk):
     for name in ("LEFT-SHIN", "Beta:left-shin", "left-chin"):
         with pytest.raises(KeyError, match=f"no joint '{name}'; there is 'left-shin'"):
             walk.joint_index(name)

@@ -11,7 +11,7 @@ const NOTED: usize = 256;
 #[derive(Debug)]
 pub struct Mask<'m> {
     words: &'m mut [u32],
-    /// Where [`Mask::prepare`] puts runs, of which `runs` are in use, for as many groups as `groups`.
+    /// Where [`Mask::prepare`] puts runs: the first `runs` are in use, for a clip with `groups` groups.
     spare: &'m mut [u32],
     runs: u16,
     groups: u16,

@@ -294,7 +294,7 @@ pub(crate) struct Yaw {
 }
 
 impl Yaw {
-    /// The turn after a rotation. The product of the quaternions, of which one has two components, is that of two plane vectors.
+    /// The turn after a rotation. One of the two quaternions has two components alone, so that their product is that of two plane vectors.
     fn turn(&self, [w, x, y, z]: Unit, up: usize) -> Unit {
         let (own, a, b) = match up {
             0 => (x, y, z),

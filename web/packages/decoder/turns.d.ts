@@ -36,7 +36,7 @@ export interface JointRef {
   raw(): number[];
 }
 
-/** Finds a joint by its name, of several the first. Throws an Error that names the joint, and one that is called alike, if the clip has none. */
+/** Finds a joint by its name, of several the first. Throws an Error that names the joint if the clip has none, and suggests one with a similar name. */
 export function findJoint(player: Player, name: string): JointRef;
 
 /** Converts an angle from 2^-32 turns to degrees, -180 to 180. */

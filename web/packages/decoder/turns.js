@@ -6,7 +6,7 @@ import { ORDERS, PART, Q, atan2, eulerOf, length, matrixOf, normalize, set, turn
 // A name without the prefix of its program, in small letters.
 const plain = (name) => name.split(":").pop().toLowerCase();
 
-/** Finds a joint by its name, whose rotation is then read frame by frame. An Error names a joint that is called alike. */
+/** Finds a joint by its name, whose rotation is then read frame by frame. An Error suggests a joint with a similar name. */
 export const findJoint = (player, name) => {
   const { clip, raw } = player;
   const index = clip.joints.findIndex((joint) => name && joint.name === name);

@@ -132,7 +132,7 @@ class Clip:
         return [(frame, name) for frame, name in self._facts["events"]]
 
     def joint_index(self, name: str) -> int:
-        """The index of the joint with this name, of several the first. Raises KeyError if there is none; it names the joint that is most alike."""
+        """The index of the joint with this name, of several the first. Raises KeyError if there is none, and suggests the joint with the most similar name."""
         for index, joint in enumerate(self.joints):
             if name and joint.name == name:
                 return index
