@@ -36,7 +36,7 @@ impl Firmware {
         Self::built("steer", package, package, target, &[], (vec![], vec![variable]))
     }
 
-    /// Builds a program to give away: without a log for debug probes, and without paths of this machine.
+    /// Builds a program that other people flash. It has no log for debug probes and holds no paths of this machine.
     pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         // As a flag, not as a setting of the profile: macros and build scripts are those of other builds then.
         let mut flags = vec!["-Cstrip=debuginfo".to_owned()];

@@ -15,6 +15,7 @@ use pantin::{ChannelState, Clip, Player};
 pub struct Expanded<'a> {
     clip: Clip<'a>,
     rig: Rig,
+    on_frame: Option<&'a (dyn Fn() + Sync)>,
 }
 
 /// Three rotation channels that hold an exponential map: their indices and axes.
@@ -23,7 +24,12 @@ type Slots = [(usize, usize); 3];
 impl<'a> Expanded<'a> {
     /// Prepares `clip`.
     pub fn new(clip: &Clip<'a>) -> Expanded<'a> {
-        Expanded { clip: *clip, rig: rig::decode(&clip.rig()) }
+        Expanded { clip: *clip, rig: rig::decode(&clip.rig()), on_frame: None }
+    }
+
+    /// Calls `on_frame` at each frame that is played, to show how far it is.
+    pub fn watched(self, on_frame: &'a (dyn Fn() + Sync)) -> Expanded<'a> {
+        Expanded { on_frame: Some(on_frame), ..self }
     }
 
     fn exponential(&self) -> Vec<Slots> {
@@ -71,6 +77,9 @@ impl Frames for Expanded<'_> {
             if frame > 0 {
                 let turned = values.iter_mut().zip(&before).zip(&rotations).filter(|(_, rotation)| **rotation);
                 turned.for_each(|((value, before), _)| *value = euler::nearest(*value, *before));
+            }
+            if let Some(on_frame) = self.on_frame {
+                on_frame();
             }
             each(&values)?;
             before.copy_from_slice(&values);

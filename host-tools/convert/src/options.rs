@@ -49,8 +49,8 @@ pub struct Options {
     pub max_scalar_error: Option<f64>,
     /// The greatest angle in degrees between the true and the decoded rotation of any joint in the world. Above 0, at most 180.
     pub max_rotation_error: Option<f64>,
-    /// The same against the joint's parent, for skinned meshes. A single Euler angle can be off by more, and by much more where the second angle is near
-    /// 90 or -90 degrees: [`ChannelBound::Error`] bounds each.
+    /// The greatest angle in degrees between the true and the decoded rotation of any joint in its parent, for skinned meshes. Above 0, at most 180. A
+    /// single Euler angle can be off by more, and by much more where the second angle is near 90 or -90 degrees: [`ChannelBound::Error`] bounds each.
     pub max_joint_error: Option<f64>,
     /// Bounds of each channel, in place of all bounds above.
     pub channels: Option<ChannelBound>,

@@ -32,7 +32,8 @@ pub struct PoseBound {
     pub shell: Shell,
     /// Greatest angle in degrees, above 0 and at most 180, between a joint's true and decoded rotation in the world.
     pub max_rotation_deg: Option<f64>,
-    /// The same for a joint's whole rotation in its parent, as a skinned mesh's local pose has it. Single Euler angles can differ by more.
+    /// Greatest angle in degrees, above 0 and at most 180, between a joint's true and decoded rotation in its parent, as a skinned mesh's local pose has
+    /// it. This bounds the whole rotation: single Euler angles can differ by more.
     pub max_joint_deg: Option<f64>,
     /// The mean distance in cm to aim at within the bound: the mean over joints and frames, End Sites left out, of the shell error, or
     /// of the distance of places if they alone are bounded. Without it the bound is filled.

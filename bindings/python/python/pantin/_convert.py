@@ -91,7 +91,7 @@ def convert(
     mean_error_cm, mean_error_percent: mean distance of all joints, End Sites left out. The clip is as small as this mean allows.
     max_scalar_error: largest error of channels that move no joint, in percent of their full scale, above 0. Default: 2.
     max_rotation_error: largest rotation error of any joint in the world, in degrees, above 0 and at most 180. Default: no bound of its own.
-    max_joint_error: the same against the joint's parent, for skinned meshes. It bounds the whole rotation: a single Euler angle can be off by more.
+    max_joint_error: largest angle, in degrees, between a joint's true and decoded rotation in its parent, for skinned meshes. It bounds the whole rotation: a single Euler angle can be off by more.
     max_channel_error: largest error of each channel, in place of all bounds above: degrees for each Euler angle in its joint's own order, as for servos, and
         percent of the range for others.
     max_accel_error: largest error of each channel's second difference, in place of all bounds above: degrees or percent per frame squared.

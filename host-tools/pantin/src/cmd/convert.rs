@@ -112,7 +112,8 @@ pub struct Arguments {
     /// Largest angle between the original and the decoded rotation of any joint in the world, in degrees, at most 180
     #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
     max_rotation_error: Option<f64>,
-    /// The same against the joint's parent, for skinned meshes. A single Euler angle, as a servo gets it, can be off by more: --max-channel-error bounds each
+    /// Largest angle between the original and the decoded rotation of any joint in its parent, in degrees, at most 180: for skinned meshes. A single Euler
+    /// angle, as a servo gets it, can be off by more: --max-channel-error bounds each
     #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
     max_joint_error: Option<f64>,
     #[command(flatten)]

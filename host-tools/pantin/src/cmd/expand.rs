@@ -6,12 +6,11 @@ use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
-use indicatif::ProgressBar;
 use pantin::{Bank, Clip};
 use pantin_convert::expand::{Expanded, gather};
 use pantin_convert::expand_keys;
 use pantin_convert::export::{self, bvh::Columns};
-use pantin_convert::motion::{Event, Frames, Motion, Rig};
+use pantin_convert::motion::{Frames, Motion};
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -165,37 +164,6 @@ impl Format {
     }
 }
 
-/// A clip that moves a bar as it is played.
-struct Watched<'w, 'c> {
-    of: &'w Expanded<'c>,
-    bar: &'w ProgressBar,
-}
-
-impl Frames for Watched<'_, '_> {
-    fn rig(&self) -> &Rig {
-        self.of.rig()
-    }
-
-    fn frame_time(&self) -> f64 {
-        self.of.frame_time()
-    }
-
-    fn frames(&self) -> usize {
-        self.of.frames()
-    }
-
-    fn events(&self) -> Vec<Event> {
-        self.of.events()
-    }
-
-    fn each(&self, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
-        self.of.each(&mut |pose| {
-            self.bar.inc(1);
-            each(pose)
-        })
-    }
-}
-
 fn glb(clip: &Clip, frames: &impl Frames, out: &mut impl Write) -> Result<()> {
     memory::limit().check(frames.frames(), frames.rig().channels())?;
     let motion = Motion { looped: clip.looped(), ..gather(frames)? };
@@ -258,11 +226,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let mut out = Staged::create(output)?;
     let bar = output::progress(format.plays() * expanded.frames() as u64, "writing {wide_bar} {percent} % {eta} left")?;
-    let watched = Watched { of: &expanded, bar: &bar };
+    let tick = || bar.inc(1);
+    let expanded = expanded.watched(&tick);
     let written = match format {
-        Format::Bvh => export::bvh::write(&watched, Columns::ThreeRotations, &mut out),
-        Format::Csv => export::table::write(&watched, &mut out),
-        Format::Glb => glb(&clip, &watched, &mut out),
+        Format::Bvh => export::bvh::write(&expanded, Columns::ThreeRotations, &mut out),
+        Format::Csv => export::table::write(&expanded, &mut out),
+        Format::Glb => glb(&clip, &expanded, &mut out),
         Format::Keys => expand_keys::write(&clip).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
         Format::H => export::source::c_header(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
         Format::Rs => {
@@ -272,7 +241,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     bar.finish_and_clear();
     out.explain(written, place)?;
     output::commit(vec![out])?;
-    output::report(json!({"frames": clip.frames(), "channels": rig.channels()}));
+    output::report(json!({"frames": clip.frames(), "channels": clip.rig().channels()}));
     if arguments.output.is_none() {
         note!("{}: written", output.display());
     }
