@@ -287,6 +287,27 @@ fn turn_orders() -> Made {
     simple("turn-orders", &joints, 0, coded)
 }
 
+/// Joints with Euler angles in every order, each a multiple of 45 degrees: rotations by half a turn, of whose matrix an element is -1, and those whose second
+/// angle is a right angle.
+fn half_turns() -> Made {
+    use Kind::{Xrotation as X, Yrotation as Y, Zrotation as Z};
+    let orders = [[X, Y, Z], [X, Z, Y], [Y, X, Z], [Y, Z, X], [Z, X, Y], [Z, Y, X]];
+    let rig = figure(&orders.repeat(2).iter().map(|order| &order[..]).collect::<Vec<_>>(), 0);
+    let mut coded = motion(8);
+    coded.exponentials = vec![false; 12];
+    // Of this step, a first position is in halves of 45 degrees, and a velocity in quarters of them.
+    let angle = |first: i32, velocity: i32| moving(2 * ((first + 4) % 8 - 4), 4 * velocity, 58);
+    let starts = (0..12).flat_map(|joint: i32| {
+        // One angle is half a turn, one moves and one is 0, in each joint others; or all three move.
+        let mut angles = [angle(4, 0), angle(joint / 3, 1), angle(0, 0)];
+        angles.rotate_left(joint as usize % 3);
+        if joint < 6 { angles } else { [angle(joint, 1), angle(2 * joint, 2), angle(3 * joint, joint % 3 + 1)] }
+    });
+    let coasting = || fill(8, || Segment { mode: 0, w: 0, k: 0 });
+    coded.channels = starts.map(|start| Channel { start, segments: coasting() }).collect();
+    Made { name: "half-turns", rig, coded, apart: false, index: 0, sections: &[] }
+}
+
 /// A loop with enough events that the fields before the first symbol cross from one block into the next.
 fn events() -> Made {
     let mut coded = motion(120);
@@ -419,6 +440,7 @@ pub fn all() -> Vec<Made> {
         widest_steps(),
         rests_and_choices(),
         turn_orders(),
+        half_turns(),
         crowd(),
         followers(),
         apart,

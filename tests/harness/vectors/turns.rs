@@ -5,8 +5,9 @@
 //! CRC-16/IBM-3740 of 28 little-endian 32-bit integers: the rotation matrix row by row, the whole angle, and the Euler angles in the six orders
 //! XYZ, XZY, YXZ, YZX, ZXY and ZYX.
 //!
-//! `turn-sums.txt` has the rotations of clips of our own motions: a line for each joint, with the clip, the joint's name, and for each frame two checksums of
-//! the same kind in eight hexadecimal digits: of the Euler angles in the six orders, then of the quaternion, the rotation matrix and the whole angle.
+//! `turn-sums.txt` has the rotations of clips of our own motions, and of one with half turns: a line for each joint, with the clip, the joint's name, and
+//! for each frame two checksums of the same kind in eight hexadecimal digits: of the Euler angles in the six orders, then of the quaternion, the rotation
+//! matrix and the whole angle.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -25,7 +26,7 @@ pub const NAME: &str = "turns.txt";
 pub const SUMS: &str = "turn-sums.txt";
 
 /// How the names of the clips begin of which it has checksums.
-const SUMMED: &str = "own-";
+const SUMMED: [&str; 2] = ["half-turns", "own-"];
 
 /// The clips, which together code joints in every form.
 const CLIPS: [&str; 6] = ["exponential-choice", "exponential-map", "mixed", "quaternion", "rests-and-choices", "turn-orders"];
@@ -80,7 +81,8 @@ fn euler_angles(turn: Turn) -> impl Iterator<Item = i32> {
 /// The text with checksums, of the committed clips.
 pub fn sums_text(folder: &Path) -> Result<String> {
     let vectors = super::load(folder)?;
-    vectors.iter().filter(|vector| vector.name.starts_with(SUMMED)).map(|vector| sums_of(&vector.name, &vector.open()?)).collect()
+    let summed = |vector: &&Vector| SUMMED.iter().any(|start| vector.name.starts_with(start));
+    vectors.iter().filter(summed).map(|vector| sums_of(&vector.name, &vector.open()?)).collect()
 }
 
 /// The lines of one clip: of each joint that has a name, which no joint before it has.

@@ -160,15 +160,15 @@ export const matrixOf = (out) => {
   const y = Q[2];
   const z = Q[3];
   const twice = (a, b, c, d) => sum(29, a, b, c, d, 0, 0, 0, 0);
-  out[0] = ONE + twice(-y, y, -z, z);
+  out[0] = (ONE + twice(-y, y, -z, z)) | 0;
   out[1] = twice(x, y, -w, z);
   out[2] = twice(x, z, w, y);
   out[3] = twice(x, y, w, z);
-  out[4] = ONE + twice(-x, x, -z, z);
+  out[4] = (ONE + twice(-x, x, -z, z)) | 0;
   out[5] = twice(y, z, -w, x);
   out[6] = twice(x, z, -w, y);
   out[7] = twice(y, z, w, x);
-  out[8] = ONE + twice(-x, x, -y, y);
+  out[8] = (ONE + twice(-x, x, -y, y)) | 0;
   return out;
 };
 

@@ -188,7 +188,10 @@ let turned = 0;
     const joint = handles.get(key);
     const checksum = values.pop();
     assert.deepEqual([...joint.euler("XYZ"), ...joint.euler("ZXY"), ...joint.quaternion()], values.map(Number), line);
-    assert.equal(crc16(Int32Array.from([...joint.matrix(), joint.angle(), ...ORDERS.flatMap((order) => joint.euler(order))])), checksum, line);
+    const numbers = [...joint.matrix(), joint.angle(), ...ORDERS.flatMap((order) => joint.euler(order))];
+    assert.equal(crc16(Int32Array.from(numbers)), checksum, line);
+    // The checksum wraps them to 32 bits, and would hide one that is not.
+    assert.ok(numbers.every((number) => number === (number | 0)), line);
     // The same rotation in floating point, of either sign.
     const [x, y, z, w] = player.rotation(joint.index);
     const along = joint.quaternion().reduce((sum, value, index) => sum + value * [w, x, y, z][index], 0);
