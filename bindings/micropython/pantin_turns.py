@@ -172,7 +172,7 @@ class JointRef:
         self._has_quaternion = any(c is not None for c in self._quaternion)
         self._axes = axes
         order = None if self._has_map or self._has_quaternion else _order(axes)
-        # The order of the Euler angles of the source, such as "ZXY"; None if it has none, or others than three different ones.
+        # The order of the Euler angles in the rig, such as "ZXY"; None if it has none, or others than three different ones.
         self.order = order if axes else None
         self._own = None if self._coded else order
         # Whether it has several forms at once, or Euler angles of no order: a product of many, whose length is made 1.

@@ -14,7 +14,7 @@ export interface JointRef {
   readonly name: string;
   /** The index in `Clip.joints`. */
   readonly index: number;
-  /** The joint's own order, that of the Euler angles of the source; undefined if it has none, or others than one to three about different axes. */
+  /** The joint's own order, that of the Euler angles in the clip's rig; undefined if it has none, or others than one to three about different axes. */
   readonly order: EulerOrder | undefined;
   /** What each of `raw()` is: 0-2 position x, y, z; 3-5 Euler angle x, y, z; 6-9 quaternion w, x, y, z; 10-12 exponential map x, y, z. */
   readonly kinds: readonly number[];

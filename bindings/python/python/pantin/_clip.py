@@ -154,7 +154,7 @@ class Clip:
         """Rotations of a joint in its parent as Euler angles in degrees, -180 to 180, however the clip codes them: (frames, 3).
 
         `order` is one of the six from 'XYZ' to 'ZYX': each angle turns about the axis as turned by those before it, as in BVH. Default: the joint's own
-        order (`Joint.order`), or 'ZXY' if it has none. In its own order, the angles of a joint that the clip codes as Euler angles are the clip's own. Otherwise
+        order (`Joint.order`), or 'XYZ' if it has none. In its own order, the angles of a joint that the clip codes as Euler angles are the clip's own. Otherwise
         the second angle is within 90 degrees of zero, so that the first and the third can jump by 180 degrees from one frame to the next; and where the
         second is near 90 or -90 degrees, only the first plus or minus the third is determined.
 
@@ -162,7 +162,7 @@ class Clip:
         """
         index = self.joint_index(joint)
         if order is None:
-            order = self.joints[index].order or "ZXY"
+            order = self.joints[index].order or "XYZ"
         turns = np.frombuffer(_pantin.euler(self._bytes, index, order), np.int32)
         return turns.reshape(self.frames, 3).astype(np.float64) * (360 / 2**32)
 
