@@ -56,6 +56,20 @@ pub fn compare(original: &Motion, other: &Motion, bounds: &Bounds) -> Result<Rep
 const NAMED: usize = 6;
 
 impl Report {
+    /// `1.4178 cm (hips.Xposition at frame 159), 0.98 degrees (chest.Yrotation at frame 50)`: the worst channel of each unit, as a part of its bound, the
+    /// worst of all first.
+    pub(crate) fn by_unit(&self, motion: &Motion) -> String {
+        let mut units = vec![];
+        let mut is_new = |worst: &&Worst| {
+            let unit = worst.in_unit(motion).1;
+            let is_new = !units.contains(&unit);
+            units.push(unit);
+            is_new
+        };
+        let named: Vec<String> = self.drift.iter().filter(|worst| is_new(worst)).map(|worst| worst.sentence(motion)).collect();
+        if named.is_empty() { self.worst.sentence(motion) } else { named.join(", ") }
+    }
+
     /// `hips.Xposition 6.566 cm at frame 159, chest.Yrotation 3.125 degrees at frame 50 and 12 more`: the worst channels.
     pub fn drift_sentence(&self, motion: &Motion) -> String {
         let named: Vec<String> = self.drift.iter().take(NAMED).map(|worst| worst.of_channel(motion)).collect();

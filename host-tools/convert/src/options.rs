@@ -56,7 +56,8 @@ pub struct Options {
     pub channels: Option<ChannelBound>,
     /// The encoder's effort, 1 to 9: speed against size; 6 by default.
     pub effort: Level,
-    /// How joints with three Euler angles are coded; by cost as the default.
+    /// How joints with three Euler angles are coded; by cost as the default. Joints whose channels have bounds keep their angles; `Exact` allows
+    /// quaternions.
     pub rotations: Rotations,
     /// Seconds between snapshots for seeking; none by default.
     pub index: Option<f64>,
@@ -193,6 +194,11 @@ impl Options {
 
     /// Whether known curves are coded as they are, for which rotations stay quaternions where the source has them so.
     pub fn keeps_quaternions(&self) -> bool {
-        self.channels == Some(ChannelBound::Exact) || self.rotations == Rotations::Quaternion
+        self.channels == Some(ChannelBound::Exact) || self.makes_quaternions()
+    }
+
+    /// Whether joints get quaternions in place of Euler angles. Those of which each angle has a bound keep their angles.
+    pub(crate) fn makes_quaternions(&self) -> bool {
+        self.rotations == Rotations::Quaternion && matches!(self.channels, None | Some(ChannelBound::Exact))
     }
 }

@@ -77,7 +77,7 @@ pub fn prepare(motion: Motion, options: &Options) -> Result<Prepared, Error> {
 fn prepared(mut motion: Motion, options: &Options) -> Result<Prepared> {
     check_settings(options)?;
     let mut notes = without_effect(options, &motion);
-    if options.rotations == Rotations::Quaternion {
+    if options.makes_quaternions() {
         motion = quaternions(&motion);
     }
     let size = [motion.rig.joints.len(), motion.rig.channels()];
@@ -156,10 +156,12 @@ fn without_effect(options: &Options, motion: &Motion) -> Vec<Note> {
     let mut notes: Vec<Note> =
         given.map(|(setting, _, what)| Note::no_effect(setting, format!("the motion has no {what}"))).collect();
     if options.channels.is_some() {
-        let given = [
-            (Setting::Effort, options.effort != Level::DEFAULT),
-            (Setting::Rotations, options.rotations == Rotations::Exponential),
-        ];
+        let is_kept_from = match options.rotations {
+            Rotations::Exponential => true,
+            Rotations::Quaternion => !options.makes_quaternions(),
+            Rotations::ByCost | Rotations::Euler => false,
+        };
+        let given = [(Setting::Effort, options.effort != Level::DEFAULT), (Setting::Rotations, is_kept_from)];
         let given = given.into_iter().filter(|(_, given)| *given);
         notes.extend(
             given.map(|(setting, _)| Note::no_effect(setting, "channels with bounds of their own are coded as they are")),

@@ -74,7 +74,7 @@ impl Report {
     pub fn to_text(&self, motion: &Motion) -> String {
         match &self.errors {
             Errors::Joints(report) => error_text::to_text(report, motion),
-            Errors::Channels(report, Constraint::Positions) => format!("error max {}", report.worst.sentence(motion)),
+            Errors::Channels(report, Constraint::Positions) => format!("error max {}", report.by_unit(motion)),
             Errors::Channels(report, Constraint::Accelerations) => {
                 let (worst, drift) = (report.worst.sentence(motion), report.drift_sentence(motion));
                 format!("error max {worst}, a frame^2\ndrift, worst first: {drift}")
@@ -109,8 +109,10 @@ fn channels_to_json(report: &channel_error::Report, motion: &Motion) -> Map<Stri
 
 #[cfg(test)]
 mod tests {
+    use crate::fit::rotation_coding::Rotations;
     use crate::import::units::figure_height_cm;
     use crate::import::{ImportOptions, InMemory, import};
+    use crate::options::ChannelBound;
     use crate::pose_bound::default_shell_cm;
     use crate::{Length, Options, convert};
 
@@ -128,5 +130,54 @@ mod tests {
         assert_eq!(told["figure_height_cm"], height, "{told:?}");
         assert_eq!(told["shell_radius_cm"], default_shell_cm(Some(height)), "{told:?}");
         assert_ne!(figure_height_cm(&looped.motion), Some(height), "closing the seam changes nothing");
+    }
+
+    /// A root that moves along and turns about all three axes.
+    fn figure() -> crate::motion::Motion {
+        let row = |frame: usize| -> String {
+            let wave = |channel: usize| 40.0 * (frame as f64 * (0.1 + 0.07 * channel as f64)).sin();
+            (0..6).map(|channel| format!("{:.4} ", wave(channel))).collect()
+        };
+        let text = "HIERARCHY ROOT hips { OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation End Site { OFFSET 0 30 0 } } \
+            MOTION Frames: 60 Frame Time: 0.04 "
+            .to_owned();
+        let text = text + &(0..60).map(row).collect::<String>();
+        let files = InMemory::new().with("figure.bvh", text.as_bytes());
+        import(&files, "figure.bvh".as_ref(), &ImportOptions::new().cm_per_unit(1.0)).unwrap().motion
+    }
+
+    #[test]
+    fn the_worst_channel_of_each_unit_is_named() {
+        let figure = figure();
+        let made = convert(&figure, &Options::new().channels(ChannelBound::Error(1.0)), &mut |_| ()).unwrap();
+        let text = made.report.to_text(&made.motion);
+        assert!(
+            text.starts_with("error max ") && text.matches(" cm (").count() == 1 && text.matches(" degrees (").count() == 1,
+            "{text}"
+        );
+        assert!(text.contains("position at frame") && text.contains("rotation at frame"), "{text}");
+        // The worst of all comes first, as in the JSON.
+        let json = made.report.to_json(&made.motion);
+        let first = json["worst_channel"].as_str().unwrap();
+        assert!(text.split(" at frame").next().unwrap().ends_with(first), "{text}: {first}");
+    }
+
+    #[test]
+    fn angles_with_bounds_of_their_own_stay_angles_whatever_coding_is_asked_for() {
+        let figure = figure();
+        for bound in [ChannelBound::Error(1.0), ChannelBound::Acceleration(0.02)] {
+            let options = Options::new().channels(bound);
+            let plain = convert(&figure, &options, &mut |_| ()).unwrap();
+            for rotations in [Rotations::Exponential, Rotations::Quaternion] {
+                let made = convert(&figure, &options.clone().rotations(rotations), &mut |_| ()).unwrap();
+                assert!(made.clip == plain.clip, "{bound:?}, {rotations:?}");
+                let said = made.notes.iter().any(|note| note.to_string().contains("no effect"));
+                assert!(said, "{bound:?}, {rotations:?}: {:?}", made.notes);
+            }
+        }
+        // Without bounds of channels, and for exact clips, quaternions are made where they are asked for.
+        let asked = Options::new().rotations(Rotations::Quaternion);
+        assert_eq!(convert(&figure, &asked, &mut |_| ()).unwrap().motion.rig.channels(), 7);
+        assert!(asked.channels(ChannelBound::Exact).makes_quaternions());
     }
 }

@@ -367,6 +367,10 @@ fn nothing_that_was_given_is_passed_over() {
         let (code, said) = run(&format!("convert nat.keys -o n.ptn --max-channel-error 5 {option}"));
         assert!(code == Some(2) && said.contains("cannot be used with"), "{said}");
     }
+    for rotations in ["exponential", "quaternion"] {
+        let (code, said) = run(&format!("convert nat.keys -o q{rotations}.ptn --max-channel-error 5 --rotations {rotations}"));
+        assert!(code == Some(0) && said.contains("channels with bounds of their own are coded as they are"), "{said}");
+    }
     let (code, said) = run("convert nat.keys -o n.ptn --exact --effort best");
     assert!(code == Some(0) && said.contains("--effort has no effect"), "{said}");
     // The curve passes its scale between keys, at any rate.
