@@ -27,46 +27,38 @@ impl Firmware {
 
     /// Builds a program with features of its package, separated by commas.
     pub fn featuring(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
-        Self::built(features, package, program, target, clips, Default::default())
+        Self::built(features, package, program, target, clips, Settings::default())
     }
 
     /// Builds a board's program with this bank as the character that buttons steer.
     pub fn steering(bank: &Path, package: &str, target: &str) -> Result<Self> {
-        let variable = ("PANTIN_CHARACTER".into(), std::path::absolute(bank)?.into_os_string());
-        Self::built("steer", package, package, target, &[], (vec![], vec![variable]))
+        let environment = vec![("PANTIN_CHARACTER".into(), std::path::absolute(bank)?.into_os_string())];
+        Self::built("steer", package, package, target, &[], Settings { environment, ..Settings::default() })
     }
 
-    /// Builds a program that other people flash. It has no log for debug probes and holds no paths of this machine.
+    /// Builds a program that other people flash. It has no log for debug probes, and holds no paths of this machine.
     pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
-        // As a flag, not as a setting of the profile: macros and build scripts are those of other builds then.
-        let mut flags = vec!["-Cstrip=debuginfo".to_owned()];
-        let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cargo"));
-        let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from).or(home);
-        let sources = cargo.map(|cargo| (cargo.join("registry/src"), "crates".into()));
-        // Where Rust's own sources are installed, their paths are other ones than where they are not.
-        for (from, to) in sources.into_iter().chain([(paths::root(), "pantin".into()), rust_sources()?]) {
-            flags.push(format!("--remap-path-prefix={}={to}", from.display()));
-        }
-        let arguments = ["--locked", "--no-default-features"];
-        let environment = [("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into())];
-        let settings = (arguments.map(OsString::from).into(), environment.map(|(name, value)| (name.into(), value)).into());
+        let settings = Settings {
+            arguments: ["--locked", "--no-default-features"].map(OsString::from).into(),
+            flags: vec!["-Cstrip=debuginfo".into()],
+            ..Settings::default()
+        };
         Self::built(features, package, program, target, clips, settings)
     }
 
-    /// `settings` are further arguments for cargo, and variables.
-    fn built(
-        features: &str,
-        package: &str,
-        program: &str,
-        target: &str,
-        clips: &[&Path],
-        settings: (Vec<OsString>, Vec<(OsString, OsString)>),
-    ) -> Result<Self> {
+    /// Builds a board's program from a copy of the repository. Other people's crates are those of other builds.
+    pub fn copied(root: &Path, package: &str, target: &str, clips: &[&Path]) -> Result<Self> {
+        let environment = vec![("CARGO_TARGET_DIR".into(), target_folder().into())];
+        let settings = Settings { workspace: Some(root.join("firmware")), environment, ..Settings::default() };
+        Self::built("", package, package, target, clips, settings)
+    }
+
+    fn built(features: &str, package: &str, program: &str, target: &str, clips: &[&Path], settings: Settings) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // Of another program that builds, too: builds with other features write the same file.
-        let folder = paths::firmware().join("target");
+        let folder = target_folder();
         std::fs::create_dir_all(&folder)?;
         let turn = std::fs::File::create(folder.join("turn.lock"))?;
         turn.lock().context("cannot wait for other builds")?;
@@ -75,14 +67,16 @@ impl Firmware {
         let joined = std::env::join_paths(&clips).context("a clip's path holds what separates paths")?;
         let clip = (!clips.is_empty()).then(|| ("PANTIN_CLIP".into(), joined));
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
+        let variables = [("DEFMT_LOG".into(), log), ("CARGO_ENCODED_RUSTFLAGS".into(), elsewhere()?)];
         let core = Core::of(target);
         let arguments =
             ["--release", "--package", package, "--bin", program, "--target", target, "--features", features].into_iter();
         let product = cargo(&Build {
-            workspace: paths::firmware(),
-            arguments: arguments.map(OsString::from).chain(core.arguments).chain(settings.0).collect(),
-            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).chain(core.environment).chain(settings.1).collect(),
+            workspace: settings.workspace.unwrap_or_else(paths::firmware),
+            arguments: arguments.map(OsString::from).chain(core.arguments).chain(settings.arguments).collect(),
+            environment: clip.into_iter().chain(variables).chain(core.environment).chain(settings.environment).collect(),
             product: program.into(),
+            flags: settings.flags,
         })?;
         let directory = tempfile::Builder::new().prefix("pantin-elf-").tempdir().context("cannot make a temporary folder")?;
         let elf = directory.path().join(program);
@@ -94,6 +88,34 @@ impl Firmware {
     pub fn elf(&self) -> &Path {
         &self.elf
     }
+}
+
+fn target_folder() -> PathBuf {
+    paths::firmware().join("target")
+}
+
+/// What one build of a program has besides the others.
+#[derive(Default)]
+struct Settings {
+    /// The folder of another firmware workspace than the repository's.
+    workspace: Option<PathBuf>,
+    /// Arguments for cargo.
+    arguments: Vec<OsString>,
+    environment: Vec<(OsString, OsString)>,
+    /// Flags of the compiler for the program alone.
+    flags: Vec<OsString>,
+}
+
+/// Flags of the compiler, as cargo takes them, that replace this machine's paths. All builds have them: with others, each crate would be
+/// compiled once more, and a program's size would depend on where the repository is.
+fn elsewhere() -> Result<OsString> {
+    let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cargo"));
+    let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from).or(home);
+    let crates = cargo.map(|cargo| (cargo.join("registry/src"), "crates".into()));
+    // Where Rust's own sources are installed, their paths are other ones than where they are not.
+    let folders = crates.into_iter().chain([(paths::root(), "pantin".into()), rust_sources()?]);
+    let flags: Vec<_> = folders.map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display())).collect();
+    Ok(flags.join("\x1f").into())
 }
 
 /// The folder of Rust's own sources, and its name in programs on machines that have none.

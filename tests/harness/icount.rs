@@ -83,6 +83,7 @@ pub fn plugin(emulator: &str) -> Result<PathBuf> {
         arguments: vec!["--release".into(), "--package".into(), "icount-plugin".into()],
         environment: vec![("QEMU_PLUGIN_API".into(), interface.into())],
         product: "icount_plugin".into(),
+        ..build::Build::default()
     })
 }
 

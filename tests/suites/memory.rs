@@ -4,23 +4,15 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use harness::build::{self, Build};
+use harness::build::Firmware;
 use harness::qemu::LM3S6965EVB;
-use harness::{clips, paths, setup};
+use harness::{clips, paths};
 use object::{Object, ObjectSection};
 
 /// Where the image and its variables begin.
 fn origins(root: &Path, clip: &Path) -> (u64, u64) {
-    let elf = build::cargo(&Build {
-        workspace: root.join("firmware"),
-        arguments: ["--release", "--package", LM3S6965EVB.name, "--target", LM3S6965EVB.target].map(Into::into).into(),
-        environment: vec![
-            ("PANTIN_CLIP".into(), clip.into()),
-            ("CARGO_TARGET_DIR".into(), paths::root().join("firmware/target/memory-test").into()),
-        ],
-        product: LM3S6965EVB.name.into(),
-    });
-    let elf = fs::read(elf.unwrap()).unwrap();
+    let firmware = Firmware::copied(root, LM3S6965EVB.name, LM3S6965EVB.target, &[clip]).unwrap();
+    let elf = fs::read(firmware.elf()).unwrap();
     let file = object::File::parse(&*elf).unwrap();
     let address = |name| file.section_by_name(name).map(|section| section.address());
     (address(".vector_table").unwrap(), address(".data").unwrap())
@@ -41,7 +33,6 @@ fn copy(name: &str, to: &Path) {
 
 #[test]
 fn the_root_memory_map_places_the_boards_image() {
-    setup::rust_target(LM3S6965EVB.target).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let clip = clips::convert(&paths::root().join("motions/walk.keys"), folder.path()).unwrap();
     let root = folder.path().join("copy");

@@ -11,7 +11,8 @@ use serde_json::Value;
 use crate::paths;
 use crate::test_programs::HOST_TOOL;
 
-/// One call of `cargo build`.
+/// One call of cargo.
+#[derive(Default)]
 pub struct Build {
     /// The folder to run in: each workspace finds its own configuration there.
     pub workspace: PathBuf,
@@ -21,15 +22,21 @@ pub struct Build {
     pub environment: Vec<(OsString, OsString)>,
     /// Name of the cargo target whose file is returned.
     pub product: String,
+    /// Flags of the compiler for the product alone: other crates are those of builds without them.
+    pub flags: Vec<OsString>,
 }
 
 /// Builds, with cargo's own messages on stderr, and returns the product's file.
 pub fn cargo(build: &Build) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--message-format=json-render-diagnostics"]).args(&build.arguments);
+    let subcommand = if build.flags.is_empty() { "build" } else { "rustc" };
+    command.args([subcommand, "--message-format=json-render-diagnostics"]).args(&build.arguments);
     if !std::io::stderr().is_terminal() {
         command.arg("--quiet");
+    }
+    if !build.flags.is_empty() {
+        command.arg("--").args(&build.flags);
     }
     command.envs(build.environment.iter().cloned()).current_dir(&build.workspace).stdout(Stdio::piped());
     let mut child = command.spawn().context("cannot start cargo")?;
@@ -56,5 +63,6 @@ pub fn host_tool() -> Result<PathBuf> {
         arguments: ["--package", "pantin-tools", "--bin", "pantin"].map(OsString::from).into(),
         environment: vec![],
         product: "pantin".into(),
+        ..Build::default()
     })
 }

@@ -70,6 +70,7 @@ fn program(site: &Path) -> Result<()> {
             .into(),
         environment: vec![("PANTIN_SITE".into(), file.into())],
         product: "pantin".into(),
+        ..Build::default()
     })?;
     say(&format!("{} has the site inside, {} bytes", program.display(), packed.len()));
     Ok(())

@@ -116,6 +116,7 @@ fn module(package: &str, features: &str, profile: &str) -> Result<Vec<u8>> {
         arguments: arguments.map(OsString::from).into(),
         environment: environment.into_iter().collect(),
         product: package.replace('-', "_"),
+        ..Build::default()
     })?;
     let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
     // The converter works for seconds, and the optimizer would take minutes for it.

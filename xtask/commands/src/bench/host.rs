@@ -149,6 +149,7 @@ fn player() -> Result<PathBuf> {
         arguments: ["--release", "--package", "pantin", "--example", "speed"].map(Into::into).into(),
         environment: vec![],
         product: "speed".into(),
+        ..Build::default()
     })
 }
 

@@ -58,6 +58,7 @@ impl Tool {
             arguments: ["--release", "--package", "pantin-tools", "--bin", "pantin"].map(Into::into).into(),
             environment: vec![],
             product: "pantin".into(),
+            ..Build::default()
         })?;
         Ok(Self { program, clips })
     }
