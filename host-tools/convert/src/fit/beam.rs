@@ -117,9 +117,30 @@ impl<C: Cost> Beam<C> {
         Beam { ahead: Some(self.least.clone()), ..self }
     }
 
-    /// The same, where a frame keeps no more than the `kept` best hypotheses while others keep coming.
-    pub fn keeping(self, kept: usize) -> Self {
-        Beam { kept: Some(kept), ..self }
+    /// From now on, a frame keeps no more than the `kept` best hypotheses while others keep coming.
+    pub fn keep_best(&mut self, kept: usize) {
+        self.kept = Some(kept);
+    }
+
+    /// Whether no hypothesis waits: none reaches the last frame.
+    pub fn is_done(&self) -> bool {
+        self.heap.iter().all(Vec::is_empty)
+    }
+
+    /// Goes back: what was extended at the `count` frames from `first` on waits again, and nothing else.
+    pub fn again(&mut self, first: usize, count: usize) {
+        for ranks in [&mut self.least, &mut self.full].into_iter().chain(&mut self.ahead) {
+            ranks.fill(f64::MAX);
+        }
+        self.heap.iter_mut().for_each(Vec::clear);
+        self.now = first;
+        for index in 0..self.extended.len() {
+            let hypothesis = self.extended[index];
+            if (first..first + count).contains(&(hypothesis.frame as usize)) {
+                self.seen(hypothesis.frame as usize, hypothesis.cost.rank());
+                self.insert(hypothesis);
+            }
+        }
     }
 
     /// Where the lists have a frame.

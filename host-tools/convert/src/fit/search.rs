@@ -96,9 +96,7 @@ pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
     if tube.x.len() < 3 {
         return resting.or_else(|| short(tube, step));
     }
-    // Where every hypothesis that was kept has come to an end, others may not have.
-    let wider = Effort { beam: WIDER * effort.beam, margin: WIDER as f64 * effort.margin, ..effort };
-    let moving = Search::new(tube, step, effort).run().or_else(|| Search::new(tube, step, wider).run());
+    let moving = Search::new(tube, step, effort).run();
     match (resting, moving) {
         (Some(rest), Some(moving)) => {
             let better = rest.bits + tube.price(&rest.path) <= moving.bits + tube.price(&moving.path);
@@ -108,8 +106,10 @@ pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
     }
 }
 
-/// By how much wider a second search is than one that found nothing.
+/// By how much wider a search is around a frame that no hypothesis passed. Those that were not kept may pass it.
 const WIDER: usize = 4;
+/// From how many frames before such a frame it is searched again, and from how many if that does not help.
+const BACK: [usize; 2] = [192, 768];
 /// By how much the step of a constant may be finer than its channel would have, or coarser.
 const CONSTANT_STEPS: std::ops::RangeInclusive<i8> = -4..=24;
 
@@ -189,7 +189,7 @@ impl<'t> Search<'t> {
             steps: Steps { w: of(0), k: of(segment::SLOPE) },
             costs: Costs::get(),
             effort,
-            beam: if effort.all_alike { beam } else { beam.keeping(KEPT * effort.beam) },
+            beam,
         }
     }
 
@@ -197,29 +197,66 @@ impl<'t> Search<'t> {
         self.begin();
         let tube = self.tube;
         let frames = tube.x.len();
-        let (position_cells, velocity_cells) =
-            (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
-        let apart = self.effort.all_alike;
-        let cell = |at: &Hypothesis<f64>| (!apart).then(|| (floor(at.p * position_cells), floor(at.v * velocity_cells)));
-        for frame in 1..frames - 1 {
-            let limit = self.beam.limit(frame, self.effort.margin);
-            self.price.begin(frame);
-            let chosen = self.beam.choose(frame, limit, self.effort.beam, cell);
-            let (start, end) = (chosen.start, chosen.end);
-            for first in chosen.step_by(LANES) {
-                self.extend::<false>(first..end.min(first + LANES));
+        let usual = self.effort;
+        let wider = Effort { beam: WIDER * usual.beam, margin: WIDER as f64 * usual.margin, ..usual };
+        let (mut frame, mut wide_until) = (1, 0);
+        // The last frame that nothing passed, and how often it was met.
+        let (mut barrier, mut met) = (0, 0);
+        loop {
+            if self.beam.is_done() && frame > barrier {
+                (barrier, met) = (frame, 0);
             }
-            // Behind a start, whose frame is the first, there is no acceleration to carry on.
-            if frame > 1 {
-                let end = end.min(start.saturating_add(self.effort.slopes));
-                for first in (start..end).step_by(LANES) {
-                    self.extend::<true>(first..end.min(first + LANES));
-                }
+            if self.beam.is_done() {
+                frame = self.again(barrier, *BACK.get(met)?);
+                wide_until = barrier + LONGEST;
+                met += 1;
             }
+            if frame >= frames - 1 {
+                break;
+            }
+            self.work_at(frame, if frame < wide_until { wider } else { usual });
+            frame += 1;
         }
         let (fitted, cost) = self.beam.backtrack(self.step)?;
         let bits = cost - self.tube.price(&fitted.path);
         Some(Fitted { bits, start_bits: self.tube.start.bits(&fitted.start), ..fitted })
+    }
+
+    /// Goes back from a frame that nothing passed. Returns where to go on.
+    fn again(&mut self, barrier: usize, back: usize) -> usize {
+        // No segment is longer: all that was extended stood within so many frames.
+        let first = barrier.saturating_sub(back + LONGEST).max(1);
+        self.beam.again(first, LONGEST);
+        if first == 1 {
+            self.begin();
+        }
+        first
+    }
+
+    /// Extends the best hypotheses of a frame.
+    fn work_at(&mut self, frame: usize, effort: Effort) {
+        self.effort = effort;
+        if !effort.all_alike {
+            self.beam.keep_best(KEPT * effort.beam);
+        }
+        let apart = effort.all_alike;
+        let (position_cells, velocity_cells) =
+            (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
+        let cell = |at: &Hypothesis<f64>| (!apart).then(|| (floor(at.p * position_cells), floor(at.v * velocity_cells)));
+        let limit = self.beam.limit(frame, effort.margin);
+        self.price.begin(frame);
+        let chosen = self.beam.choose(frame, limit, effort.beam, cell);
+        let (start, end) = (chosen.start, chosen.end);
+        for first in chosen.step_by(LANES) {
+            self.extend::<false>(first..end.min(first + LANES));
+        }
+        // Behind a start, whose frame is the first, there is no acceleration to carry on.
+        if frame > 1 {
+            let end = end.min(start.saturating_add(effort.slopes));
+            for first in (start..end).step_by(LANES) {
+                self.extend::<true>(first..end.min(first + LANES));
+            }
+        }
     }
 
     /// Starts near the target, each with its velocity.
