@@ -298,7 +298,7 @@ impl<C: Cost> Beam<C> {
 
     /// The code that ends cheapest at the last frame, and what it costs; `None` if no hypothesis reaches that frame. Its bits are
     /// for the caller to fill in.
-    pub fn backtrack(self, step: u8) -> Option<(Fitted, C)> {
+    pub fn backtrack(&self, step: u8) -> Option<(Fitted, C)> {
         let end = self.heap[self.place(self.last_frame)].iter().min_by(|a, b| a.cost.total().total_cmp(&b.cost.total()))?;
         let mut chain = vec![*end];
         while let Some(before) = self.extended.get(chain[chain.len() - 1].from as usize) {
@@ -358,5 +358,31 @@ mod tests {
         let (all, some) = (cheapest(usize::MAX), cheapest(64));
         assert!(all.2 > 1000 && some.2 < 300, "{} and {} held", all.2, some.2);
         assert_eq!((all.0, all.1), (some.0, some.1));
+    }
+
+    #[test]
+    fn going_back_lets_wait_what_was_extended_there() {
+        let mut beam = Beam::new(400, 3, 9);
+        beam.insert(Hypothesis::start(0.0, 0.0, 0.0));
+        for frame in 1..200 {
+            for id in beam.choose(frame, f64::MAX, 3, |_| None::<u8>) {
+                let from = beam.extended(id);
+                for length in [2, 5] {
+                    beam.offer(Hypothesis { cost: from.cost + 1.0, frame: from.frame + length, from: id as u32, ..from }, 1e4);
+                }
+            }
+        }
+        let extended: Vec<u32> = (0..beam.extended.len()).map(|index| beam.extended(index).frame).collect();
+        let expected = |frame: u32| extended.iter().filter(|&&extended| extended == frame).count();
+        beam.again(100, 9);
+        let waiting = |frame: u32| beam.heap[beam.place(frame as usize)].iter().filter(|waits| waits.frame == frame).count();
+        assert!((100..109).all(|frame| waiting(frame) == expected(frame) && expected(frame) > 0));
+        assert_eq!(beam.heap.iter().map(Vec::len).sum::<usize>(), (100..109).map(expected).sum::<usize>());
+        assert!((100..109).all(|frame| beam.least(frame) < f64::MAX) && beam.least(109) == f64::MAX);
+        for frame in 100..109 {
+            assert!(!beam.is_done());
+            beam.choose(frame, f64::MAX, 3, |_| None::<u8>);
+        }
+        assert!(beam.is_done());
     }
 }

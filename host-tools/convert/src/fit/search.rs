@@ -193,7 +193,7 @@ impl<'t> Search<'t> {
         }
     }
 
-    fn run(mut self) -> Option<Fitted> {
+    fn run(&mut self) -> Option<Fitted> {
         self.begin();
         let tube = self.tube;
         let frames = tube.x.len();
