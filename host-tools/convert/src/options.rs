@@ -197,7 +197,7 @@ impl Options {
         self.channels == Some(ChannelBound::Exact) || self.makes_quaternions()
     }
 
-    /// Whether joints get quaternions in place of Euler angles. Those of which each angle has a bound keep their angles.
+    /// Whether joints get quaternions in place of Euler angles. Where each angle has a bound, they keep their angles.
     pub(crate) fn makes_quaternions(&self) -> bool {
         self.rotations == Rotations::Quaternion && matches!(self.channels, None | Some(ChannelBound::Exact))
     }

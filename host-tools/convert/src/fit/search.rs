@@ -224,7 +224,7 @@ impl<'t> Search<'t> {
 
     /// Goes back from a frame that nothing passed. Returns where to go on.
     fn again(&mut self, barrier: usize, back: usize) -> usize {
-        // No segment is longer: all that was extended stood within so many frames.
+        // A segment has LONGEST frames at most. Each way that was kept therefore has a hypothesis in a stretch of that length.
         let first = barrier.saturating_sub(back + LONGEST).max(1);
         self.beam.again(first, LONGEST);
         if first == 1 {
