@@ -1,17 +1,16 @@
 //! Our character's state machine, steered by the recorded session: its poses and its pictures.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use conformance::RATE;
 use pantin_animator::Character;
-use pantin_animator::machine::{FEET_SECTION, SECTION, Table};
+use pantin_animator::machine::{FEET_SECTION, Table};
 use pantin_animator::session::{Input, Replay};
 use pantin_app::CHARACTER_KEYS;
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{DrawStyle, View};
 use pantin_pictures::machine::playback::{Stage, play, session};
-use pantin_pictures::machine::{Source, Text, make};
 
 use crate::build::Firmware;
 use crate::display::{OLED, Picture};
@@ -77,9 +76,9 @@ pub fn crcs() -> Result<Crcs> {
     Ok(Crcs { stepped, sought: vec![] })
 }
 
-/// What the page's player shows of it, at the size of the reference board's display, drawn here.
+/// What the page's player, which holds no feet, shows of it at the size of the reference board's display, drawn here.
 pub fn pictures() -> Result<Vec<Picture>> {
-    let bytes = std::fs::read(bank())?;
+    let bytes = without_feet()?;
     let mut stage = Stage::new(&bytes, [OLED.width, OLED.height], View::default(), None)?;
     let mut framebuffer = Framebuffer::<Gray4Rows<128, 64, 1024>>::new();
     let mut shown = vec![];
@@ -96,23 +95,19 @@ pub fn pictures() -> Result<Vec<Picture>> {
     Ok(shown)
 }
 
-/// Our character with a table of feet, which its own machine does not ask for.
-pub fn bank_with_feet() -> Result<Vec<u8>> {
-    let bytes = std::fs::read(bank())?;
-    let text = std::fs::read_to_string(paths::root().join("motions/character.toml"))? + "\n[feet]\n";
-    let file = Text { name: "character.toml", text: &text };
-    let made = make(&Source::parse(&file)?, &file, &pantin::Bank::new_checked(&bytes)?)?;
-    let whole = pantin_convert::bank::with_section(&bytes, SECTION, &made.table)?;
-    pantin_convert::bank::with_section(&whole, FEET_SECTION, &made.feet.context("a machine without feet")?)
+/// The bank without its table of feet: they are not held.
+pub fn without_feet() -> Result<Vec<u8>> {
+    Ok(pantin_convert::bank::without_section(&std::fs::read(bank())?, FEET_SECTION)?)
 }
 
-/// Plays the session on a machine with the character of a bank, in step with the host, and compares each picture with what the same program shows here;
+/// Plays the session on a machine with our character, in step with the host, and compares each picture with what the same program shows here;
 /// returns the pictures.
-pub fn on_board(machine: Machine, bank: &Path) -> Result<Vec<Picture>> {
+pub fn on_board(machine: Machine) -> Result<Vec<Picture>> {
+    let bank = bank();
     let letters = letters()?;
     let display = machine.display.context("a machine without a display")?;
-    let expected = simulator::steer_in_step(&std::fs::read(bank)?, display, &letters)?;
-    let program = Firmware::steering(bank, machine.name, machine.target)?;
+    let expected = simulator::steer_in_step(&std::fs::read(&bank)?, display, &letters)?;
+    let program = Firmware::steering(&bank, machine.name, machine.target)?;
     let mut session = Session::start(Launch::new(machine, program.elf()))?;
     let nothing: Vec<u8> = vec![];
     for (number, (letters, expected)) in std::iter::once(&nothing).chain(&letters).zip(&expected).enumerate() {

@@ -46,7 +46,7 @@ fn a_cortex_m33_plays_in_floating_point_as_the_host_does() {
 
 #[test]
 fn the_phone_is_steered_as_on_the_host() {
-    let shown = steered::on_board(SX1, &steered::bank()).unwrap().len();
+    let shown = steered::on_board(SX1).unwrap().len();
     assert_eq!(shown, 901);
     println!("{shown} pictures are equal");
 }

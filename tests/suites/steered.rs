@@ -15,28 +15,15 @@ fn the_record_is_what_the_session_gives() {
     assert_eq!(crcs.stepped.len(), 901);
 }
 
-/// The reference board's own program, steered by letters over its serial line: as in `cargo xtask demo --steer --board`.
+/// The reference board's own program, steered by letters over its serial line: as in `cargo xtask demo --steer --board`. It holds the feet.
 #[test]
 fn the_reference_board_is_steered_as_on_the_host() {
     if setup::host_only("a state machine on a board") {
         return;
     }
-    let shown = steered::on_board(LM3S6965EVB, &steered::bank()).unwrap().len();
-    assert_eq!(shown, 901);
-    println!("{shown} pictures are equal");
-}
-
-/// Plays the session with a table of feet: the board's pictures are the host's, and differ from those without feet.
-#[test]
-fn the_reference_board_holds_feet_as_the_host_does() {
-    if setup::host_only("feet on a board") {
-        return;
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let bank = folder.path().join("feet.ptb");
-    std::fs::write(&bank, steered::bank_with_feet().unwrap()).unwrap();
-    let held = steered::on_board(LM3S6965EVB, &bank).unwrap();
-    let free = std::fs::read(steered::bank()).unwrap();
+    let held = steered::on_board(LM3S6965EVB).unwrap();
+    assert_eq!(held.len(), 901);
+    let free = steered::without_feet().unwrap();
     let free = simulator::steer_in_step(&free, LM3S6965EVB.display.unwrap(), &steered::letters().unwrap()).unwrap();
     let others = held.iter().zip(&free).filter(|(held, free)| held.pixels != free.pixels).count();
     println!("{} pictures are equal; in {others} the feet are elsewhere than without the table", held.len());

@@ -281,7 +281,7 @@ fn our_character_goes_through_all_its_states() {
     let machine = ["machine".as_ref(), toml.as_os_str(), "--bank".as_ref(), library.as_os_str(), "-o".as_ref(), bank.as_os_str()];
     let out = pantin(&[&machine[..], &["--graph".as_ref(), graph.as_os_str()]].concat());
     let said = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert!(out.status.success() && said.contains("15 states, 28 transitions") && !said.contains("warning"), "{said}");
+    assert!(out.status.success() && said.contains("16 states, 29 transitions") && !said.contains("warning"), "{said}");
     let picture = std::fs::read_to_string(&graph).unwrap();
     let document = roxmltree::Document::parse(&picture).unwrap();
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
@@ -299,9 +299,10 @@ fn our_character_goes_through_all_its_states() {
     let mut animator = Animator::new(machine.first_clip(&bank).unwrap(), memory.lend()).unwrap();
     let mut visited = vec![machine.state()];
     // Inputs held or fired, and for how many pictures.
-    let script: [(&[&str], &str, usize); 21] = [
+    let script: [(&[&str], &str, usize); 22] = [
         (&["go"], "", 90),
         (&["go", "fast"], "", 60),
+        (&["go", "fast"], "jump", 60),
         (&["go"], "", 40),
         (&[], "", 90),
         (&[], "jump", 80),
@@ -335,7 +336,7 @@ fn our_character_goes_through_all_its_states() {
         }
     }
     let mut names: Vec<&str> = visited.iter().map(|&state| table.state_name(state)).collect();
-    assert_eq!(names[..6], ["idle", "start", "walk", "run", "walk", "stop"]);
+    assert_eq!(names[..8], ["idle", "start", "walk", "run", "leap", "run", "walk", "stop"]);
     assert_eq!(*names.last().unwrap(), "idle");
     names.sort_unstable();
     names.dedup();

@@ -130,9 +130,8 @@ pub struct Transition {
     pub sync: Option<Sync>,
     /// The longest that it waits to begin, in seconds.
     pub within: Option<f64>,
-    /// The new clip's first frame: 0 without it.
-    #[serde(default)]
-    pub start: Start,
+    /// The new clip's first frame. Without it: 0, or in step in a loop that is waited for, for players that hold no feet.
+    pub start: Option<Start>,
 }
 
 /// What a transition waits for.
@@ -164,12 +163,6 @@ pub enum Start {
     Frame(u32),
     /// `in-step`: the frame that is in step with the old clip, by the events of footsteps.
     Named(String),
-}
-
-impl Default for Start {
-    fn default() -> Start {
-        Start::Frame(0)
-    }
 }
 
 impl Source {

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-pub use feet::own_bank;
 use harness::animator::{self as reference, Lent, Sequence};
 use harness::{paths, vectors};
 use pantin::Clip;

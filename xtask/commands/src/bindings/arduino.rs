@@ -10,7 +10,6 @@ use pantin_convert::export::source::{c_header, c_header_of_bank};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::animator::own_bank;
 use super::{output, uno};
 use crate::arduino;
 
@@ -76,7 +75,7 @@ pub fn classes(folder: &TempDir) -> Result<()> {
     own::convert(&build::host_tool()?, &paths::root().join("motions/library/run.keys"), &clip, &[])?;
     let bytes = std::fs::read(&clip)?;
     std::fs::write(place.join("run.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "run")?)?;
-    let hero = own_bank(folder)?;
+    let hero = std::fs::read(paths::root().join("motions/character.ptb"))?;
     std::fs::write(place.join("hero.h"), c_header_of_bank(&pantin::Bank::new_checked(&hero)?, &hero, "hero")?)?;
     let program = place.join("classes");
     let mut objects = vec![];

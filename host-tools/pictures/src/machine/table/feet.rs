@@ -76,7 +76,7 @@ impl Maker<'_, '_> {
                     let to = &source.states[usize::from(self.state(&row.to)?)];
                     let [from, to] = [self.clip_of(state)?, self.clip_of(to)?].map(|clip| &clips[usize::from(clip)]);
                     let start = match &row.start {
-                        Start::Frame(frame) if *frame > 0 => Some(*frame as usize),
+                        Some(Start::Frame(frame)) if *frame > 0 => Some(*frame as usize),
                         _ => None,
                     };
                     let speed = state.speed.unwrap_or(1.0);

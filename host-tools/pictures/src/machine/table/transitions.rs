@@ -66,9 +66,11 @@ impl<'s> Maker<'s, '_> {
             kind => (if kind == Kind::Inertialized { 1 } else { 2 }, length(row, &clip)?),
         };
         let start = match &row.start {
-            Start::Named(name) if name == "in-step" => NONE,
-            Start::Named(name) => bail!("start: expected a frame's number or \"in-step\", found {}", quoted(name)),
-            &Start::Frame(frame) => {
+            None if row.sync.is_some() && clip.looped() => NONE,
+            None => 0,
+            Some(Start::Named(name)) if name == "in-step" => NONE,
+            Some(Start::Named(name)) => bail!("start: expected a frame's number or \"in-step\", found {}", quoted(name)),
+            &Some(Start::Frame(frame)) => {
                 ensure!(frame <= MOST_START, "start: frame {frame}; at most {MOST_START}");
                 ensure!(
                     frame < clip.frames(),
