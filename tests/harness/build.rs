@@ -30,12 +30,6 @@ impl Firmware {
         Self::built(features, package, program, target, clips, Settings::default())
     }
 
-    /// Builds a board's program with this bank as the character that buttons steer.
-    pub fn steering(bank: &Path, package: &str, target: &str) -> Result<Self> {
-        let environment = vec![("PANTIN_CHARACTER".into(), std::path::absolute(bank)?.into_os_string())];
-        Self::built("steer", package, package, target, &[], Settings { environment, ..Settings::default() })
-    }
-
     /// Builds a program that other people flash. It has no log for debug probes, and holds no paths of this machine.
     pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         let settings = Settings {

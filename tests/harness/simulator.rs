@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use anyhow::{Context, Result, ensure};
 use board_drivers::indexed::{Indexed, IndexedRows};
@@ -10,6 +11,7 @@ use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
 use pantin_app::{Board, CHARACTER_KEYS, Entry, Exit, Options, SteerKey};
 use pantin_figure::rotation::{Rotation, RotationBackend};
+use pantin_figure::solid::{Look, look_text};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
 use crate::display::{self, Depth, Display, Picture};
@@ -107,21 +109,38 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading
     Ok(pictures)
 }
 
-/// The pictures of a display while letters steer the character of a bank in step: the first, then one after each of `letters`.
-pub fn steer_in_step(bank: &[u8], display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
+/// The other character of a scene.
+fn dancer() -> Result<Look> {
+    static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
+    let text = std::fs::read_to_string(crate::paths::root().join("motions/looks/dancer.look"))?;
+    let bytes = look_text::compile(&text).map_err(|error| anyhow::anyhow!("{error}"))?;
+    Look::new(BYTES.get_or_init(|| bytes.to_vec())).map_err(|error| anyhow::anyhow!("{error}"))
+}
+
+/// The pictures of a display while letters steer the character of a bank in step: the first, then one after each of `letters`. `words` are those of the
+/// firmware's command line; with `meets` it meets another character.
+pub fn steer_in_step(bank: &[u8], meets: bool, display: Display, words: &[&str], letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
     match display.depth {
-        Depth::Gray4 => steered::<Gray4Rows<128, 64, 1024>>(bank, display, letters),
-        _ => steered::<Rgb565Rows<176, 220, 19360>>(bank, display, letters),
+        Depth::Gray4 => steered::<Gray4Rows<128, 64, 1024>>(bank, meets, display, words, letters),
+        _ => steered::<Rgb565Rows<176, 220, 19360>>(bank, meets, display, words, letters),
     }
 }
 
-fn steered<L: Layout<Ink: Value>>(bank: &[u8], display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
+fn steered<L: Layout<Ink: Value>>(
+    bank: &[u8],
+    meets: bool,
+    display: Display,
+    words: &[&str],
+    letters: &[Vec<u8>],
+) -> Result<Vec<Picture>> {
     let mut pictures = vec![];
     let present = |framebuffer: &mut Framebuffer<L>| pictures.push(picture(display, framebuffer));
     let wishes = letters.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     let mut simulator = Simulator::<Rotation, L, _> { wishes, ..Simulator::new(present) };
     let mut frame = Box::new(Framebuffer::<L>::new());
-    let exit = pantin_app::steer::<_, 64>(bank, &CHARACTER_KEYS, 0, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
+    let program = if meets { pantin_app::meet::<_, 64> } else { pantin_app::steer::<_, 64> };
+    let options = Options { other_look: dancer()?, ..Options::parse(words.iter().copied().chain([sync::ARGUMENT])) };
+    let exit = program(bank, &CHARACTER_KEYS, 0, options, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }

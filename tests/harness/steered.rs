@@ -26,7 +26,28 @@ pub fn bank() -> PathBuf {
 
 /// The session.
 pub fn script() -> PathBuf {
-    paths::root().join("motions/steer.txt")
+    Program::Steer.script()
+}
+
+/// What a board plays of our character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// It is steered.
+    Steer,
+    /// It meets another one.
+    Meet,
+}
+
+impl Program {
+    /// The feature of a board that plays it.
+    fn feature(self) -> &'static str {
+        if self == Program::Meet { "scene" } else { "steer" }
+    }
+
+    /// The recorded session.
+    fn script(self) -> PathBuf {
+        paths::root().join("motions").join(if self == Program::Meet { "meet.txt" } else { "steer.txt" })
+    }
 }
 
 /// The record: a CRC of each picture's pose, place and heading.
@@ -48,12 +69,13 @@ fn played(bytes: &[u8], show: impl FnMut(&mut Character<'_, '_>) -> Result<()>) 
     play(bytes, Replay::new(session(&text, "steer.txt", &Table::of_bank(bytes)?)?, RATE), show)
 }
 
-/// The letters of [`pantin_app::CHARACTER_KEYS`] that make the session's inputs, before each picture but the first.
-pub fn letters() -> Result<Vec<Vec<u8>>> {
+/// The letters of [`pantin_app::CHARACTER_KEYS`] that make a session's inputs, before each picture but the first.
+pub fn letters(program: Program) -> Result<Vec<Vec<u8>>> {
     let bytes = std::fs::read(bank())?;
     let table = Table::of_bank(&bytes)?;
-    let text = std::fs::read_to_string(script())?;
-    let session = session(&text, "steer.txt", &table)?;
+    let path = program.script();
+    let text = std::fs::read_to_string(&path)?;
+    let session = session(&text, &path.to_string_lossy(), &table)?;
     let pictures = u64::from(session.end_us()) * u64::from(RATE) / 1_000_000;
     let mut letters = vec![vec![]; pictures as usize];
     for timed in session.inputs() {
@@ -100,15 +122,16 @@ pub fn without_feet() -> Result<Vec<u8>> {
     Ok(pantin_convert::bank::without_section(&std::fs::read(bank())?, FEET_SECTION)?)
 }
 
-/// Plays the session on a machine with our character, in step with the host, and compares each picture with what the same program shows here;
-/// returns the pictures.
-pub fn on_board(machine: Machine) -> Result<Vec<Picture>> {
-    let bank = bank();
-    let letters = letters()?;
+/// Plays a session on a machine with our character, in step with the host, and compares each picture with what the same program shows here; returns the
+/// pictures. `style` is `lines` or `solid`.
+pub fn on_board(machine: Machine, program: Program, style: &str) -> Result<Vec<Picture>> {
+    let letters = letters(program)?;
     let display = machine.display.context("a machine without a display")?;
-    let expected = simulator::steer_in_step(&std::fs::read(&bank)?, display, &letters)?;
-    let program = Firmware::steering(&bank, machine.name, machine.target)?;
-    let mut session = Session::start(Launch::new(machine, program.elf()))?;
+    let meets = program == Program::Meet;
+    let expected = simulator::steer_in_step(&std::fs::read(bank())?, meets, display, &[style], &letters)?;
+    let features = if style == "solid" { format!("{},solid", program.feature()) } else { program.feature().into() };
+    let firmware = Firmware::featuring(&features, machine.name, machine.name, machine.target, &[])?;
+    let mut session = Session::start(Launch::new(machine, firmware.elf()).argument(style))?;
     let nothing: Vec<u8> = vec![];
     for (number, (letters, expected)) in std::iter::once(&nothing).chain(&letters).zip(&expected).enumerate() {
         let (told, picture) = session.next(letters)?;

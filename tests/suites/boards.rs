@@ -11,8 +11,9 @@ use harness::icount::FRAME_REGIONS;
 use harness::panel::{self, Colour, GC9A01, Mono, Panel, ST7789};
 use harness::qemu::{MPS2_AN505, SX1};
 use harness::rp2040::{self, OLED, Spi};
+use harness::steered::{self, Program};
 use harness::stm32::{Outcome, Pin, Request, TARGET};
-use harness::{clips, equal, image, paths, pictures, screen, simulator, steered, unicorn};
+use harness::{clips, equal, image, paths, pictures, screen, simulator, unicorn};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::rotation_float::FloatRotation;
 use pantin_pictures::face::speak;
@@ -46,7 +47,7 @@ fn a_cortex_m33_plays_in_floating_point_as_the_host_does() {
 
 #[test]
 fn the_phone_is_steered_as_on_the_host() {
-    let shown = steered::on_board(SX1).unwrap().len();
+    let shown = steered::on_board(SX1, Program::Steer, "lines").unwrap().len();
     assert_eq!(shown, 901);
     println!("{shown} pictures are equal");
 }

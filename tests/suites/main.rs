@@ -15,6 +15,7 @@ mod independent;
 mod laws;
 mod link;
 mod live_body;
+mod meeting;
 mod memory;
 mod panels;
 mod pico;

@@ -1,7 +1,8 @@
 //! A state machine on the reference board, steered by the recorded session: picture by picture what the host shows.
 
 use harness::qemu::LM3S6965EVB;
-use harness::{setup, simulator, steered};
+use harness::steered::{self, Program};
+use harness::{setup, simulator};
 
 /// `PANTIN_UPDATE=1` writes the record again, after a change of the motions, the machine or the animator.
 #[test]
@@ -21,10 +22,12 @@ fn the_reference_board_is_steered_as_on_the_host() {
     if setup::host_only("a state machine on a board") {
         return;
     }
-    let held = steered::on_board(LM3S6965EVB).unwrap();
+    let held = steered::on_board(LM3S6965EVB, Program::Steer, "lines").unwrap();
     assert_eq!(held.len(), 901);
     let free = steered::without_feet().unwrap();
-    let free = simulator::steer_in_step(&free, LM3S6965EVB.display.unwrap(), &steered::letters().unwrap()).unwrap();
+    let free = steered::letters(Program::Steer)
+        .map(|letters| simulator::steer_in_step(&free, false, LM3S6965EVB.display.unwrap(), &[], &letters));
+    let free = free.unwrap().unwrap();
     let others = held.iter().zip(&free).filter(|(held, free)| held.pixels != free.pixels).count();
     println!("{} pictures are equal; in {others} the feet are elsewhere than without the table", held.len());
     assert_eq!(held.len(), free.len());

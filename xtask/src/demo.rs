@@ -12,7 +12,7 @@ const REFERENCE: &str = "lm3s6965evb";
 
 /// Runs the demonstration.
 pub fn run(arguments: &[String]) -> Result<()> {
-    let no_board = arguments.iter().any(|argument| ["-h", "--help", "--steer"].contains(&argument.as_str()));
+    let no_board = arguments.iter().any(|argument| ["-h", "--help", "--meet", "--steer"].contains(&argument.as_str()));
     // What goes wrong there the demonstration's own build shows.
     let ahead = if no_board { None } else { build_ahead(board(arguments)).ok() };
     let status = crate::cargo_run(&["--profile", "demo", "--package", "xtask-demo"]).args(arguments).status();

@@ -51,6 +51,11 @@ impl<'a> Look<'a> {
         Ok(Look { chain, shares: own, forward })
     }
 
+    /// Where the joint that faces is in a pose, in 2^[`pantin::Form::length_exponent`] units of the source.
+    pub fn eye(&self, pose: &[i32]) -> [i32; 3] {
+        self.chain.place(pose, usize::MAX).place.map(|x| shifted(x, -self.chain.shift))
+    }
+
     /// Turns the joints towards a point in the axes of the pose, in 2^[`pantin::Form::length_exponent`] units of the source.
     #[inline(never)]
     pub fn at(&self, pose: &mut [i32], target: [i32; 3]) -> Reach {

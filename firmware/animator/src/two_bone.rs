@@ -91,6 +91,12 @@ impl<'a> Limb<'a> {
         self.chain.place(pose, usize::MAX).place.map(|x| shifted(x, -self.chain.shift))
     }
 
+    /// Where the upper joint is in a pose, in the same units.
+    pub fn start(&self, pose: &[i32]) -> [i32; 3] {
+        let [_, first, ..] = self.places(pose);
+        first.place.map(|x| shifted(x, -self.chain.shift))
+    }
+
     /// The length of the limb when it is stretched, in the same units.
     pub fn length(&self) -> i32 {
         shifted(self.upper.0 + self.lower.0, -self.chain.shift)

@@ -104,6 +104,16 @@ pub trait Renderer {
     #[cfg(feature = "steer")]
     fn look_at(&mut self, canvas: Canvas, view: View, style: Style, poses: impl FnMut(&mut dyn FnMut(&[i32])));
 
+    /// Sets a camera up that stays where it is, for poses that stand somewhere in the world: see [`Renderer::look_at`].
+    #[cfg(feature = "scene")]
+    fn look_at_stands(
+        &mut self,
+        canvas: Canvas,
+        view: View,
+        style: Style,
+        poses: impl FnMut(&mut dyn FnMut(&[i32], pantin_figure::Stand)),
+    );
+
     /// Takes the pose to draw of a figure that stands somewhere in the world.
     #[cfg(feature = "steer")]
     fn set_pose_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand);
@@ -156,6 +166,19 @@ impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
     fn look_at(&mut self, canvas: Canvas, view: View, style: Style, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
         make_room(self, style);
         Figure::look_at(self, canvas, view, poses);
+    }
+
+    #[cfg(feature = "scene")]
+    #[inline(always)]
+    fn look_at_stands(
+        &mut self,
+        canvas: Canvas,
+        view: View,
+        style: Style,
+        poses: impl FnMut(&mut dyn FnMut(&[i32], pantin_figure::Stand)),
+    ) {
+        make_room(self, style);
+        Figure::look_at_stands(self, canvas, view, poses);
     }
 
     #[cfg(feature = "steer")]

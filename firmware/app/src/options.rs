@@ -33,6 +33,9 @@ pub struct Options {
     /// The character of figures that have volume.
     #[cfg(feature = "solid")]
     pub look: pantin_figure::solid::Look,
+    /// The character of the other figure of a scene.
+    #[cfg(all(feature = "scene", feature = "solid"))]
+    pub other_look: pantin_figure::solid::Look,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
     /// Whether the display stays lit when nobody gives a command for ten minutes.
@@ -74,6 +77,8 @@ impl Options {
             solid: false,
             #[cfg(feature = "solid")]
             look: pantin_figure::solid::Look::DEFAULT,
+            #[cfg(all(feature = "scene", feature = "solid"))]
+            other_look: pantin_figure::solid::Look::DEFAULT,
             hud: false,
             awake: false,
             figures: 1,

@@ -341,8 +341,11 @@ fn draw<B: Board, S: Source>(
 ) {
     board.mark_start();
     framebuffer.clear();
+    let mut style = view_state.style;
     for actor in actors {
-        actor.content.draw(framebuffer, view_state.style);
+        actor.content.draw(framebuffer, style);
+        // The first figure's floor is everyone's.
+        style.lines.ground &= !S::ONE_WORLD;
     }
     board.mark_stop();
 }

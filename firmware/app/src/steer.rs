@@ -20,7 +20,7 @@ use pantin_figure::{Canvas, View};
 const MASK_WORDS: usize = crate::RIG.div_ceil(32);
 
 /// Why a character cannot be played.
-enum Refusal {
+pub(crate) enum Refusal {
     /// The figure has no place in the renderer.
     Figure(pantin_figure::Error),
     /// The bank, its state machine or one of its clips.
@@ -63,7 +63,12 @@ pub fn steer<B: Board, const CHANNELS: usize>(
     let mut view_state = ViewState::new(&Options { hud: true, ..options });
     let listener = Listener::default();
     let mut context = PlayContext { mode, view_state: &mut view_state, framebuffer, board, listener };
-    match set_up::<B, CHANNELS>(bank, keys, leave, &mut context) {
+    exit(set_up::<B, CHANNELS>(bank, keys, leave, &mut context))
+}
+
+/// Says in the log why something cannot be played.
+pub(crate) fn exit(outcome: Result<Outcome, Refusal>) -> Exit {
+    match outcome {
         Ok(Outcome::Exit(exit)) => exit,
         Ok(_) => Exit::Done,
         Err(Refusal::Figure(error)) => {
@@ -77,6 +82,46 @@ pub fn steer<B: Board, const CHANNELS: usize>(
     }
 }
 
+/// Memory of a character whose rig has at most `CHANNELS` channels: of the second clip of blends it has none.
+pub(crate) struct Body<'a, const CHANNELS: usize> {
+    memory: Workspace<CHANNELS, CHANNELS>,
+    states: [ChannelState; CHANNELS],
+    values: [i32; CHANNELS],
+    sampled: [i32; CHANNELS],
+    words: [u32; MASK_WORDS],
+    feet: Feet<'a>,
+}
+
+impl<'a, const CHANNELS: usize> Body<'a, CHANNELS> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        let values = || [0; CHANNELS];
+        Body {
+            memory: Workspace::new(),
+            states: [ChannelState::NEW; CHANNELS],
+            values: values(),
+            sampled: values(),
+            words: [0; MASK_WORDS],
+            feet: Feet::new(),
+        }
+    }
+
+    /// The character of a bank, with its first layer and its feet, if it has them.
+    pub fn character<'m>(&'m mut self, bank: &'a [u8]) -> Result<Character<'a, 'm>, Refusal> {
+        let Body { memory, states, values, sampled, words, feet } = self;
+        let mut character = Character::new(bank, memory.lend())?;
+        if character.table().layer(0).is_some() {
+            character.lend_layer(LayerMemory { states, values, sampled, words })?;
+        }
+        match character.lend_feet(feet) {
+            // A bank without feet.
+            Ok(()) | Err(pantin_animator::Error::Machine(TableError::Missing)) => {}
+            Err(error) => return Err(error.into()),
+        }
+        Ok(character)
+    }
+}
+
 /// Sets the character up and plays it.
 fn set_up<B: Board, const CHANNELS: usize>(
     bank: &[u8],
@@ -84,23 +129,10 @@ fn set_up<B: Board, const CHANNELS: usize>(
     leave: u16,
     context: &mut PlayContext<B>,
 ) -> Result<Outcome, Refusal> {
-    let mut memory = Workspace::<CHANNELS, CHANNELS>::new();
-    let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS], [0; CHANNELS]);
-    let mut words = [0; MASK_WORDS];
-    let mut feet = Feet::new();
+    let mut body = Body::<CHANNELS>::new();
     let mut renderer = BoardRenderer::<B>::empty();
-    aim::<B>(bank, context.view_state.style, &mut renderer, &mut states, &mut values, &mut sampled)?;
-    let mut character = Character::new(bank, memory.lend())?;
-    if character.table().layer(0).is_some() {
-        let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
-        character.lend_layer(layer)?;
-    }
-    match character.lend_feet(&mut feet) {
-        // A bank without feet.
-        Ok(()) | Err(pantin_animator::Error::Machine(TableError::Missing)) => {}
-        Err(error) => return Err(error.into()),
-    }
-    let mut source = SteeredSource::new(character, keys, leave, context.mode, context.board.held());
+    aim::<B>(bank, context.view_state.style, &mut renderer, &mut body.states, &mut body.values, &mut body.sampled)?;
+    let mut source = SteeredSource::new(body.character(bank)?, keys, leave, context.mode, context.board.held());
     Ok(play(
         &mut [Actor { entry: &Entry { name: "", bytes: &[], rig: &[] }, source: &mut source, content: &mut renderer }],
         context,

@@ -26,21 +26,27 @@ fn steered() {
 #[cfg(feature = "solid")]
 fn character() {
     println!("cargo::rerun-if-env-changed=PANTIN_LOOK");
-    let value = match std::env::var("PANTIN_LOOK") {
-        Err(_) => "Look::DEFAULT".into(),
-        Ok(path) => {
-            println!("cargo::rerun-if-changed={path}");
-            match std::fs::read_to_string(&path).map(|text| pantin_figure::solid::look_text::compile(&text)) {
-                Ok(Ok(bytes)) => format!("match Look::new(&{bytes:?}) {{ Ok(look) => look, Err(_) => panic!() }}"),
-                Ok(Err(error)) => return println!("cargo::error={path}: {error}"),
-                Err(error) => {
-                    return println!("cargo::error={path}: {error}: set PANTIN_LOOK to the absolute path of a .look file");
-                }
-            }
+    let own = std::env::var("PANTIN_LOOK").map_or(Ok("Look::DEFAULT".into()), |path| look(&path));
+    // What stands beside it in a scene.
+    let other = look(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../motions/looks/dancer.look"));
+    let (value, other) = match (own, other) {
+        (Ok(own), Ok(other)) => (own, other),
+        (Err(error), _) | (_, Err(error)) => {
+            return println!("cargo::error={error}: set PANTIN_LOOK to the absolute path of a .look file");
         }
     };
     let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts");
-    let text =
-        format!("use pantin_figure::solid::Look;\n\n/// The character of solid figures.\npub const LOOK: Look = {value};\n");
+    let text = format!(
+        "use pantin_figure::solid::Look;\n\n/// The character of solid figures.\npub const LOOK: Look = {value};\n\n/// That of the other figure of a scene.\npub const OTHER_LOOK: Look = {other};\n"
+    );
     std::fs::write(std::path::Path::new(&out).join("look.rs"), text).expect("OUT_DIR is writable");
+}
+
+/// A character's text as an expression.
+#[cfg(feature = "solid")]
+fn look(path: &str) -> Result<String, String> {
+    println!("cargo::rerun-if-changed={path}");
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
+    let bytes = pantin_figure::solid::look_text::compile(&text).map_err(|error| format!("{path}: {error}"))?;
+    Ok(format!("match Look::new(&{bytes:?}) {{ Ok(look) => look, Err(_) => panic!() }}"))
 }

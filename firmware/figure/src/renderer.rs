@@ -154,9 +154,21 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
 
     /// [`FigureRenderer::look_at`] for poses that stand somewhere in the world.
     pub fn look_at_stands(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32], Stand))) {
+        self.look_for_stands(canvas, view, poses, Extent::include);
+    }
+
+    /// [`FigureRenderer::look_at_stands`] for what `cover` says that a pose covers of the display.
+    #[inline(always)]
+    pub(crate) fn look_for_stands(
+        &mut self,
+        canvas: Canvas,
+        view: View,
+        poses: impl FnMut(&mut dyn FnMut(&[i32], Stand)),
+        cover: impl Fn(&mut Extent, &Self),
+    ) {
         self.canvas = canvas;
         self.choose();
-        self.frame(view, poses, Self::place_at, Extent::include);
+        self.frame(view, poses, Self::place_at, cover);
     }
 
     /// Places the joints of a pose at the origin.

@@ -39,6 +39,8 @@ Options:
       --frames <FRAMES>               Frames to show (default: 600)
       --steer                         Play a recorded session of our character's state machine instead, on this machine;
                                       with --board (lm3s6965evb or sx1), steer it yourself in the emulator's window
+      --meet                          Steer it to another character, which reacts to it, in the emulator's window
+                                      of --board (sx1 without it)
   -h, --help                          Print help";
 
 /// Pictures on the contact sheet.
@@ -72,6 +74,8 @@ struct Demo {
     /// Whether a body has volume.
     solid: bool,
     steer: bool,
+    /// Whether the character meets another one.
+    meet: bool,
     /// Whether `board` was given.
     on_board: bool,
 }
@@ -87,6 +91,7 @@ impl Demo {
             frames: 600,
             solid: false,
             steer: false,
+            meet: false,
             on_board: false,
         };
         let mut parser = lexopt::Parser::from_args(arguments);
@@ -106,6 +111,7 @@ impl Demo {
                     }
                 }
                 Arg::Long("steer") => demo.steer = true,
+                Arg::Long("meet") => demo.meet = true,
                 Arg::Short('h') | Arg::Long("help") => {
                     println!("{USAGE}");
                     return Ok(None);
@@ -122,8 +128,11 @@ impl Demo {
     /// Converts, plays, writes the pictures, prints the table.
     #[cfg_attr(feature = "simulator", expect(unused_variables))]
     fn run(self, arguments: &[OsString]) -> Result<()> {
+        if self.meet {
+            return steer::live(if self.on_board { &self.board } else { "sx1" }, true);
+        }
         if self.steer && self.on_board {
-            return steer::live(&self.board);
+            return steer::live(&self.board, false);
         }
         if self.steer {
             return steer::run(&self.out);

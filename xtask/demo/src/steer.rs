@@ -1,4 +1,4 @@
-//! `cargo xtask demo --steer`: our character's state machine, steered by a recorded session, or on an emulated board by the user.
+//! `cargo xtask demo --steer` and `--meet`: our character's state machine, steered by a recorded session, or on an emulated board by the user.
 
 use std::path::Path;
 use std::process::Command;
@@ -17,18 +17,22 @@ const SHEET: &str = "36";
 /// Machines whose program can be steered.
 const BOARDS: [&str; 2] = ["lm3s6965evb", "sx1"];
 
-/// Runs the character on an emulated board in a window of its own, until `q` is typed. Letters in the terminal steer it.
-pub fn live(board: &str) -> Result<()> {
-    ensure!(BOARDS.contains(&board), "--steer --board {board}: expected {}", BOARDS.join(" or "));
+/// Runs the character on an emulated board in a window of its own, until `q` is typed. Letters in the terminal steer it. With `meets` it meets another one.
+pub fn live(board: &str, meets: bool) -> Result<()> {
+    ensure!(BOARDS.contains(&board), "--board {board}: expected {}", BOARDS.join(" or "));
     let machine = qemu::board(board)?;
     let emulator = setup::install_emulator(machine.emulator)?;
     say(&format!("building the firmware of {board}"));
-    let firmware = build::Firmware::featuring("steer", machine.name, machine.name, machine.target, &[])?;
+    let features = if meets { "scene,solid" } else { "steer" };
+    let firmware = build::Firmware::featuring(features, machine.name, machine.name, machine.target, &[])?;
     say(
         "type w to walk and again to stop, f to run, space to jump, a and d to turn, s to sit down and stand up,\nh to wave, b to bow, n to dance; q ends",
     );
     let mut command = Command::new(&emulator);
-    command.args(["-M", machine.model, "-serial", "stdio", "-monitor", "none", "-semihosting-config", "enable=on,target=native"]);
+    // The first word is the program's name.
+    let words = if meets { ",arg=pantin,arg=solid" } else { "" };
+    command.args(["-M", machine.model, "-serial", "stdio", "-monitor", "none"]);
+    command.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
     let status = command.arg("-kernel").arg(firmware.elf()).status();
     let status = status.with_context(|| format!("cannot start {}", emulator.display()))?;
     ensure!(status.success(), "{} ended with {status}", machine.emulator);

@@ -3,6 +3,8 @@
 mod clip;
 #[cfg(feature = "link")]
 pub(crate) mod link;
+#[cfg(feature = "scene")]
+pub(crate) mod met;
 #[cfg(feature = "steer")]
 pub(crate) mod steered;
 
@@ -15,6 +17,8 @@ pub(crate) trait Source {
     const LIVE: bool;
     /// Whether buttons and letters are commands. They steer the source otherwise.
     const COMMANDS: bool = true;
+    /// Whether all sources' figures stand in one world, before one camera.
+    const ONE_WORLD: bool = false;
 
     /// Takes the buttons that are held, before it moves on: [`Board::held`](crate::Board::held).
     #[cfg(feature = "steer")]

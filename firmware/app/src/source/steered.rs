@@ -18,7 +18,7 @@ const SYNC_RATE: u64 = 30;
 
 /// A character and its keys.
 pub(crate) struct SteeredSource<'k, 'c, 'm> {
-    character: Character<'c, 'm>,
+    pub(super) character: Character<'c, 'm>,
     keys: &'k [SteerKey<'k>],
     /// The buttons that end the program.
     leave: u16,
@@ -36,6 +36,24 @@ impl<'k, 'c, 'm> SteeredSource<'k, 'c, 'm> {
     /// A character with the buttons that are held at first.
     pub fn new(character: Character<'c, 'm>, keys: &'k [SteerKey<'k>], leave: u16, mode: Mode, buttons: u16) -> Self {
         SteeredSource { character, keys, leave, mode, buttons, letters: 0, pictures: 0, ended: None }
+    }
+
+    /// Moves on by a number of periods, or in [`Mode::Sync`] by a picture. Returns the time in microseconds.
+    pub(super) fn go_on(&mut self, frames: i32) -> u32 {
+        if self.ended.is_some() {
+            return 0;
+        }
+        let time_us = |picture: u32| (u64::from(picture) * 1_000_000 / SYNC_RATE) as u32;
+        let elapsed_us = match self.mode {
+            Mode::Sync => time_us(self.pictures).wrapping_sub(time_us(self.pictures.saturating_sub(1))),
+            Mode::Frames(_) | Mode::Play => frames.unsigned_abs().saturating_mul(PERIOD_US),
+        };
+        self.pictures = self.pictures.wrapping_add(1);
+        if let Err(error) = self.character.update(elapsed_us) {
+            error!("the state machine cannot go on: {}", defmt::Display2Format(&error));
+            self.ended = Some(Exit::BadClip);
+        }
+        elapsed_us
     }
 
     /// Gives the machine what a letter does.
@@ -76,19 +94,7 @@ impl Source for SteeredSource<'_, '_, '_> {
     }
 
     fn advance(&mut self, frames: i32) {
-        if self.ended.is_some() {
-            return;
-        }
-        let time_us = |picture: u32| (u64::from(picture) * 1_000_000 / SYNC_RATE) as u32;
-        let elapsed_us = match self.mode {
-            Mode::Sync => time_us(self.pictures).wrapping_sub(time_us(self.pictures.saturating_sub(1))),
-            Mode::Frames(_) | Mode::Play => frames.unsigned_abs().saturating_mul(PERIOD_US),
-        };
-        self.pictures = self.pictures.wrapping_add(1);
-        if let Err(error) = self.character.update(elapsed_us) {
-            error!("the state machine cannot go on: {}", defmt::Display2Format(&error));
-            self.ended = Some(Exit::BadClip);
-        }
+        self.go_on(frames);
     }
 
     fn ended(&self) -> Option<Exit> {

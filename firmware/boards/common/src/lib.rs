@@ -46,7 +46,7 @@ pub use embedded_storage::nor_flash;
 pub use exit::{Code, exit};
 pub use flash::{Flash, NoFlash};
 #[cfg(feature = "solid")]
-pub use look::LOOK;
+pub use look::{LOOK, OTHER_LOOK};
 #[cfg(not(feature = "emulated"))]
 pub use panic_screen::{PanicBoard, panic_screen, refusal_screen};
 pub use register::Register;

@@ -3,14 +3,18 @@
 use crate::CHARACTER;
 use crate::exit::exit;
 use crate::run_emulated::options;
-use pantin_app::{Board, CHARACTER_KEYS, steer};
+#[cfg(feature = "scene")]
+use pantin_app::meet as program;
+#[cfg(not(feature = "scene"))]
+use pantin_app::steer as program;
+use pantin_app::{Board, CHARACTER_KEYS};
 use pantin_figure::surface::Framebuffer;
 
 /// Channels of its rig, at most.
 const CHANNELS: usize = 64;
 
-/// Plays the character as the command line says, and ends the emulator.
+/// Plays the character, or with the feature `scene` two that meet, as the command line says, and ends the emulator.
 pub fn run_steered<B: Board>(mut board: B) -> ! {
     let mut framebuffer = Framebuffer::new();
-    exit(steer::<B, CHANNELS>(CHARACTER, &CHARACTER_KEYS, 0, options(), &mut framebuffer, &mut board).into())
+    exit(program::<B, CHANNELS>(CHARACTER, &CHARACTER_KEYS, 0, options(), &mut framebuffer, &mut board).into())
 }

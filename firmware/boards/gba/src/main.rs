@@ -37,14 +37,11 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        pantin_app::steer::<_, CHANNELS>(
-            board_common::CHARACTER,
-            &keys::STEER,
-            keys::SELECT,
-            options(),
-            &mut framebuffer,
-            &mut board,
-        );
+        #[cfg(feature = "scene")]
+        use pantin_app::meet as program;
+        #[cfg(not(feature = "scene"))]
+        use pantin_app::steer as program;
+        program::<_, CHANNELS>(board_common::CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
         board.overlay([""; 2]);
     }
     loop {
@@ -66,6 +63,8 @@ fn options() -> Options {
         solid: true,
         #[cfg(feature = "solid")]
         look: board_common::LOOK,
+        #[cfg(all(feature = "scene", feature = "solid"))]
+        other_look: board_common::OTHER_LOOK,
         ..Options::parse([])
     }
 }

@@ -284,6 +284,13 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         self.measure();
     }
 
+    /// Sets the camera up for poses that stand somewhere in the world: see [`FigureRenderer::look_at_stands`].
+    pub fn look_at_stands(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32], crate::Stand))) {
+        let ends = self.ends();
+        self.figure.look_for_stands(canvas, view, poses, |extent, figure| cover(extent, figure, ends));
+        self.measure();
+    }
+
     /// Takes a pose: see [`FigureRenderer::set_pose`].
     pub fn set_pose(&mut self, pose: Pose<'_>) -> Result<(), WrongForm> {
         self.figure.set_pose(pose)?;
