@@ -119,7 +119,7 @@ pub fn pictures() -> Result<Vec<Picture>> {
 
 /// The bank without its table of feet: they are not held.
 pub fn without_feet() -> Result<Vec<u8>> {
-    Ok(pantin_convert::bank::without_section(&std::fs::read(bank())?, FEET_SECTION)?)
+    pantin_convert::bank::without_section(&std::fs::read(bank())?, FEET_SECTION)
 }
 
 /// Plays a session on a machine with our character, in step with the host, and compares each picture with what the same program shows here; returns the

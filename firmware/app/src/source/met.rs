@@ -251,7 +251,7 @@ fn turned(way: u32, there: bool, elapsed_us: u32) -> u32 {
 fn between(from: [i32; 3], to: [i32; 3], way: u32) -> [i32; 3] {
     let way = u64::from(way);
     // 3 w^2 - 2 w^3.
-    let eased = ((way * way >> 15) * (3 * u64::from(WHOLE) - 2 * way) >> 15) as i64;
+    let eased = ((((way * way) >> 15) * (3 * u64::from(WHOLE) - 2 * way)) >> 15) as i64;
     let mut between = from;
     for (own, to) in between.iter_mut().zip(to) {
         let far = i64::from(to) - i64::from(*own);
