@@ -12,16 +12,16 @@ use pantin_convert::key_clip;
 
 use super::{Goal, table};
 
-/// Folders of our motions, and the most bytes that their key clips may take together.
+/// Folders of our motions, and the most bytes that their key clips may take together: of the library 280 for each motion.
 const GROUPS: [(&str, &str, f64); 4] = [
     ("walk, run, greet, kneebend", "", f64::INFINITY),
-    ("library motions", "library", 4200.0),
+    ("library motions", "library", 4480.0),
     ("faces", "face", 310.0),
     ("emotes", "emotes", 490.0),
 ];
 /// Motions with a goal of their own.
 const SINGLE: [(&str, f64); 2] = [("walk", 90.0), ("run", 110.0)];
-const MOST_IN_ALL: f64 = 5500.0;
+const MOST_IN_ALL: f64 = 5780.0;
 
 const HEADER: [&str; 9] = [
     "motion",
