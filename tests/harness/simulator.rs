@@ -109,7 +109,7 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading
     Ok(pictures)
 }
 
-/// The other character of a scene.
+/// The character that the other one meets.
 fn dancer() -> Result<Look> {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
     let text = std::fs::read_to_string(crate::paths::root().join("motions/looks/dancer.look"))?;

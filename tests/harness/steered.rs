@@ -41,7 +41,7 @@ pub enum Program {
 impl Program {
     /// The feature of a board that plays it.
     fn feature(self) -> &'static str {
-        if self == Program::Meet { "scene" } else { "steer" }
+        if self == Program::Meet { "meet" } else { "steer" }
     }
 
     /// The recorded session.

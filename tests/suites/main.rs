@@ -15,7 +15,7 @@ mod independent;
 mod laws;
 mod link;
 mod live_body;
-mod meeting;
+mod meet;
 mod memory;
 mod panels;
 mod pico;

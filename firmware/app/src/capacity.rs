@@ -105,7 +105,7 @@ pub trait Renderer {
     fn look_at(&mut self, canvas: Canvas, view: View, style: Style, poses: impl FnMut(&mut dyn FnMut(&[i32])));
 
     /// Sets a camera up that stays where it is, for poses that stand somewhere in the world: see [`Renderer::look_at`].
-    #[cfg(feature = "scene")]
+    #[cfg(feature = "meet")]
     fn look_at_stands(
         &mut self,
         canvas: Canvas,
@@ -168,7 +168,7 @@ impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
         Figure::look_at(self, canvas, view, poses);
     }
 
-    #[cfg(feature = "scene")]
+    #[cfg(feature = "meet")]
     #[inline(always)]
     fn look_at_stands(
         &mut self,

@@ -8,7 +8,7 @@
 //! - `run_stored` (feature `update`) also plays a clip from flash, which `pantin update` replaces over the serial line;
 //! - [`multi`](multi()) plays several clips side by side;
 //! - `steer` (feature `steer`) plays the state machine of a bank, which the buttons steer.
-//! - `meet` (feature `scene`) lets that character meet another one, which reacts to it.
+//! - `meet` (feature `meet`) lets that character meet another one, which reacts to it.
 //!
 //! With the feature `link`, [`run`](run()) can play poses that arrive over the serial line instead of a clip's. With the feature `events`,
 //! `Board::event` hears footfalls, sounds and other events when their frames are shown. With the feature `bank`, `run_stored` plays all clips of a
@@ -87,12 +87,12 @@ mod idle;
 #[cfg(feature = "steer")]
 mod keys;
 mod log;
+#[cfg(feature = "meet")]
+mod meet;
 mod menu;
 mod multi;
 mod options;
 mod run;
-#[cfg(feature = "scene")]
-mod scene;
 mod session;
 mod source;
 #[cfg(feature = "steer")]
@@ -110,13 +110,13 @@ pub use commands::Command;
 pub use events::HeardEvent;
 #[cfg(feature = "steer")]
 pub use keys::{CHARACTER_KEYS, SteerKey};
+#[cfg(feature = "meet")]
+pub use meet::meet;
 pub use multi::{FIGURES, FigureBuffers, multi};
 #[cfg(feature = "key")]
 pub use options::Key;
 pub use options::{Mode, NEXT, Options, QUIT, SHOWN};
 pub use run::run;
-#[cfg(feature = "scene")]
-pub use scene::meet;
 pub use session::Entry;
 #[cfg(feature = "steer")]
 pub use steer::steer;

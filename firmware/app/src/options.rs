@@ -33,8 +33,8 @@ pub struct Options {
     /// The character of figures that have volume.
     #[cfg(feature = "solid")]
     pub look: pantin_figure::solid::Look,
-    /// The character of the other figure of a scene.
-    #[cfg(all(feature = "scene", feature = "solid"))]
+    /// The character of the character that another one meets.
+    #[cfg(all(feature = "meet", feature = "solid"))]
     pub other_look: pantin_figure::solid::Look,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
@@ -77,7 +77,7 @@ impl Options {
             solid: false,
             #[cfg(feature = "solid")]
             look: pantin_figure::solid::Look::DEFAULT,
-            #[cfg(all(feature = "scene", feature = "solid"))]
+            #[cfg(all(feature = "meet", feature = "solid"))]
             other_look: pantin_figure::solid::Look::DEFAULT,
             hud: false,
             awake: false,

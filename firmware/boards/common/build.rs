@@ -27,7 +27,7 @@ fn steered() {
 fn character() {
     println!("cargo::rerun-if-env-changed=PANTIN_LOOK");
     let own = std::env::var("PANTIN_LOOK").map_or(Ok("Look::DEFAULT".into()), |path| look(&path));
-    // What stands beside it in a scene.
+    // What meets it.
     let other = look(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../motions/looks/dancer.look"));
     let (value, other) = match (own, other) {
         (Ok(own), Ok(other)) => (own, other),
@@ -37,7 +37,7 @@ fn character() {
     };
     let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts");
     let text = format!(
-        "use pantin_figure::solid::Look;\n\n/// The character of solid figures.\npub const LOOK: Look = {value};\n\n/// That of the other figure of a scene.\npub const OTHER_LOOK: Look = {other};\n"
+        "use pantin_figure::solid::Look;\n\n/// The character of solid figures.\npub const LOOK: Look = {value};\n\n/// That of the one that it meets.\npub const OTHER_LOOK: Look = {other};\n"
     );
     std::fs::write(std::path::Path::new(&out).join("look.rs"), text).expect("OUT_DIR is writable");
 }

@@ -23,7 +23,7 @@ pub fn live(board: &str, meets: bool) -> Result<()> {
     let machine = qemu::board(board)?;
     let emulator = setup::install_emulator(machine.emulator)?;
     say(&format!("building the firmware of {board}"));
-    let features = if meets { "scene,solid" } else { "steer" };
+    let features = if meets { "meet,solid" } else { "steer" };
     let firmware = build::Firmware::featuring(features, machine.name, machine.name, machine.target, &[])?;
     say(
         "type w to walk and again to stop, f to run, space to jump, a and d to turn, s to sit down and stand up,\nh to wave, b to bow, n to dance; q ends",

@@ -3,8 +3,8 @@
 mod clip;
 #[cfg(feature = "link")]
 pub(crate) mod link;
-#[cfg(feature = "scene")]
-pub(crate) mod met;
+#[cfg(feature = "meet")]
+pub(crate) mod paired;
 #[cfg(feature = "steer")]
 pub(crate) mod steered;
 

@@ -59,7 +59,7 @@ pub(crate) fn options() -> Options {
     Options {
         #[cfg(feature = "solid")]
         look: crate::LOOK,
-        #[cfg(all(feature = "scene", feature = "solid"))]
+        #[cfg(all(feature = "meet", feature = "solid"))]
         other_look: crate::OTHER_LOOK,
         ..Options::parse(text.unwrap_or("").split(' '))
     }

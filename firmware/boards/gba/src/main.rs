@@ -37,9 +37,9 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        #[cfg(feature = "scene")]
+        #[cfg(feature = "meet")]
         use pantin_app::meet as program;
-        #[cfg(not(feature = "scene"))]
+        #[cfg(not(feature = "meet"))]
         use pantin_app::steer as program;
         program::<_, CHANNELS>(board_common::CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
         board.overlay([""; 2]);
@@ -63,7 +63,7 @@ fn options() -> Options {
         solid: true,
         #[cfg(feature = "solid")]
         look: board_common::LOOK,
-        #[cfg(all(feature = "scene", feature = "solid"))]
+        #[cfg(all(feature = "meet", feature = "solid"))]
         other_look: board_common::OTHER_LOOK,
         ..Options::parse([])
     }

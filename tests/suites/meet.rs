@@ -15,7 +15,7 @@ fn shows_what_the_host_shows(machine: Machine, style: &str) -> Vec<Picture> {
 
 #[test]
 fn two_characters_meet_on_the_reference_board_as_on_the_host() {
-    if setup::host_only("a scene on a board") {
+    if setup::host_only("a meeting on a board") {
         return;
     }
     shows_what_the_host_shows(LM3S6965EVB, "lines");
@@ -31,7 +31,7 @@ fn rows(picture: &Picture, rows: Range<usize>) -> Picture {
 /// `PANTIN_UPDATE=1` draws the README's picture again.
 #[test]
 fn two_characters_meet_on_the_phone_in_colour_as_on_the_host() {
-    if setup::host_only("a scene on a phone") {
+    if setup::host_only("a meeting on a phone") {
         return;
     }
     let shown = shows_what_the_host_shows(SX1, "solid");

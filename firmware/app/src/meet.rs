@@ -6,7 +6,7 @@ use crate::keys::SteerKey;
 use crate::options::Options;
 use crate::run::{Actor, play};
 use crate::session::{Entry, Outcome, PlayContext};
-use crate::source::met::{Meeting, MetSource, Role};
+use crate::source::paired::{Meeting, PairedSource, Role};
 use crate::source::steered::SteeredSource;
 use crate::steer::{Body, Refusal, exit};
 use crate::update::Listener;
@@ -61,13 +61,13 @@ fn set_up<B: Board, const CHANNELS: usize>(
     let mut second = BoardRenderer::<B>::empty();
     let meeting = Meeting::default();
     let (steered, mut other) = (steered.character(bank)?, other.character(bank)?);
-    MetSource::put(&mut other, APART_CM);
+    PairedSource::put(&mut other, APART_CM);
     for (renderer, style) in [(&mut first, context.view_state.style), (&mut second, other_style)] {
         aim::<B, CHANNELS>(bank, [steered.pose(), other.pose()], renderer, style)?;
     }
     let held = context.board.held();
     let source =
-        |character, keys, role| MetSource::new(SteeredSource::new(character, keys, leave, context.mode, held), role, &meeting);
+        |character, keys, role| PairedSource::new(SteeredSource::new(character, keys, leave, context.mode, held), role, &meeting);
     let (mut steered, mut other) = (source(steered, keys, Role::Steered)?, source(other, &[], Role::Other)?);
     let entry = Entry { name: "", bytes: &[], rig: &[] };
     Ok(play(

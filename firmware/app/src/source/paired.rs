@@ -51,7 +51,7 @@ pub(crate) enum Role {
 }
 
 /// A character that meets another one.
-pub(crate) struct MetSource<'s, 'k, 'c, 'm> {
+pub(crate) struct PairedSource<'s, 'k, 'c, 'm> {
     own: SteeredSource<'k, 'c, 'm>,
     role: Role,
     meeting: &'s Meeting,
@@ -79,8 +79,10 @@ struct Axes {
 impl Axes {
     fn of(clip: &Clip) -> Axes {
         let shift = i32::from(clip.length_exponent());
-        let unit = (1_000_000u64 << 24).checked_div(clip.rig().unit_micro_cm().into()).unwrap_or(0) as i64;
-        let cm = if shift >= 0 { unit >> shift.min(62) } else { unit.wrapping_shl(shift.unsigned_abs().min(24)) };
+        let unit = (1_000_000u64 << 24).checked_div(clip.rig().unit_micro_cm().into()).unwrap_or(0);
+        let scaled = if shift >= 0 { unit >> shift.min(63) } else { unit.saturating_mul(1 << shift.unsigned_abs().min(40)) };
+        // Below 2^23 raw units, of which a channel has 2^32.
+        let cm = scaled.min(1 << 47) as i64;
         Axes { up: clip.rig().up().axis() % 3, negative: clip.rig().up().is_negative(), cm: cm >> 16 }
     }
 
@@ -118,7 +120,7 @@ impl Axes {
 }
 
 /// What is to happen between the two, as one of them sees it.
-struct Scene {
+struct Seen {
     /// Where the other's head and shoulder are, in the axes of the pose.
     head: [i32; 3],
     shoulder: [i32; 3],
@@ -128,13 +130,13 @@ struct Scene {
     bows: bool,
 }
 
-impl Scene {
+impl Seen {
     fn is_within(&self, raw: i64) -> bool {
-        self.along * self.along + self.aside * self.aside < raw * raw
+        squares([self.along, self.aside]) < squares([raw])
     }
 }
 
-impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
+impl<'s, 'k, 'c, 'm> PairedSource<'s, 'k, 'c, 'm> {
     /// Fails if the rig has no joints of a head, an arm and a shoulder by the names of `motions/character.toml`.
     pub fn new(mut own: SteeredSource<'k, 'c, 'm>, role: Role, meeting: &'s Meeting) -> Result<Self, Error> {
         let animator = own.character.animator();
@@ -144,7 +146,7 @@ impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
         let look = Look::of(&clip, groups, "head", &shares, [0, 0, 1])?;
         let hand = Limb::to(&clip, groups, "right-hand", Limits::default())?;
         let axes = Axes::of(&clip);
-        Ok(MetSource { own, role, meeting, look, hand, gaze: 0, touch: 0, near: false, bowed: false, axes })
+        Ok(PairedSource { own, role, meeting, look, hand, gaze: 0, touch: 0, near: false, bowed: false, axes })
     }
 
     /// Stands a character somewhere else than at the origin.
@@ -154,10 +156,10 @@ impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
         character.animator().set_placement(Placement { place, heading: pantin::Angle::from_bits(i32::MIN) });
     }
 
-    fn scene(&self, other: &Sight, placement: Placement) -> Scene {
+    fn seen(&self, other: &Sight, placement: Placement) -> Seen {
         let [along, aside] = placement.to_pose(other.placement.place).map(i64::from);
         let to_pose = |point: Point| self.axes.to_pose(placement, point);
-        Scene { head: to_pose(other.head), shoulder: to_pose(other.shoulder), along, aside, bows: other.bows }
+        Seen { head: to_pose(other.head), shoulder: to_pose(other.shoulder), along, aside, bows: other.bows }
     }
 
     fn state_is(&self, name: &str) -> bool {
@@ -172,11 +174,11 @@ impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
     }
 
     /// What the other one does by itself before an update.
-    fn react(&mut self, scene: &Scene) {
-        let (near, bows) = (scene.is_within(self.axes.raw(NEAR_CM)), scene.bows);
+    fn react(&mut self, seen: &Seen) {
+        let (near, bows) = (seen.is_within(self.axes.raw(NEAR_CM)), seen.bows);
         if self.role == Role::Other && self.state_is("idle") {
-            let turned = if scene.aside > 0 { "left" } else { "right" };
-            if scene.aside.abs() > scene.along {
+            let turned = if seen.aside > 0 { "left" } else { "right" };
+            if seen.aside.abs() > seen.along {
                 self.fire(turned);
             } else if bows && !self.bowed {
                 self.fire("bow");
@@ -188,16 +190,16 @@ impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
     }
 
     /// Turns the head, and lays the hand on the shoulder.
-    fn correct(&mut self, scene: &Scene, elapsed_us: u32) {
+    fn correct(&mut self, seen: &Seen, elapsed_us: u32) {
         let (axes, calm) = (self.axes, self.state_is("idle") || self.state_is("walk") || self.state_is("wave"));
-        let sees = scene.along > scene.aside.abs() / 2 && scene.is_within(axes.raw(SEEN_CM)) && calm;
+        let sees = seen.along > seen.aside.abs() / 2 && seen.is_within(axes.raw(SEEN_CM)) && calm;
         let [shoulder, hand] = [self.hand.start(self.own.pose().values), self.hand.end(self.own.pose().values)];
         let lift = if axes.negative { -axes.raw(ABOVE_CM) } else { axes.raw(ABOVE_CM) } as i32;
-        let ([along, aside], height) = axes.split(scene.shoulder);
+        let ([along, aside], height) = axes.split(seen.shoulder);
         let target = axes.join([along.wrapping_sub(axes.raw(BEFORE_CM) as i32), aside], height.wrapping_add(lift));
-        let far = |a: [i32; 3], b: [i32; 3]| a.iter().zip(b).map(|(a, b)| (i64::from(*a) - i64::from(b)).pow(2)).sum::<i64>();
-        let length = i64::from(self.hand.length());
-        let reaches = far(shoulder, target) < length * length * 15 / 16;
+        let way = shoulder.iter().zip(target).map(|(from, to)| i64::from(to) - i64::from(*from));
+        // Not quite stretched.
+        let reaches = squares(way) < squares([i64::from(self.hand.length()) * 31 / 32]);
         let touches = self.role == Role::Steered && self.state_is("idle") && reaches;
         self.gaze = turned(self.gaze, sees, elapsed_us);
         self.touch = turned(self.touch, touches, elapsed_us);
@@ -207,7 +209,7 @@ impl<'s, 'k, 'c, 'm> MetSource<'s, 'k, 'c, 'm> {
         let ahead = axes.join([a.wrapping_add(axes.raw(AHEAD_CM) as i32), b], height);
         let pose = self.own.character.animator().pose_mut();
         if self.gaze > 0 {
-            self.look.at(pose, between(ahead, scene.head, self.gaze));
+            self.look.at(pose, between(ahead, seen.head, self.gaze));
         }
         if self.touch > 0 {
             let (target, near) = (between(hand, target, self.touch), axes.raw(1) as u32);
@@ -241,6 +243,12 @@ fn mirrored(placement: Placement, [a, b, height]: Point) -> Point {
     [a, b, height]
 }
 
+/// The sum of squares, cut off at the greatest number.
+fn squares(lengths: impl IntoIterator<Item = i64>) -> u64 {
+    let square = |x: i64| x.unsigned_abs().saturating_mul(x.unsigned_abs());
+    lengths.into_iter().map(square).fold(0, u64::saturating_add)
+}
+
 /// A way on which something is, or is not, to be.
 fn turned(way: u32, there: bool, elapsed_us: u32) -> u32 {
     let step = ((u64::from(elapsed_us) << 15) / u64::from(TURN_US)).min(WHOLE.into()) as u32;
@@ -260,7 +268,7 @@ fn between(from: [i32; 3], to: [i32; 3], way: u32) -> [i32; 3] {
     between
 }
 
-impl Source for MetSource<'_, '_, '_, '_> {
+impl Source for PairedSource<'_, '_, '_, '_> {
     const LIVE: bool = false;
     const COMMANDS: bool = false;
     const ONE_WORLD: bool = true;
@@ -275,12 +283,12 @@ impl Source for MetSource<'_, '_, '_, '_> {
         let other = self.meeting.seen.get(1 - self.role as usize).and_then(Cell::get);
         if let Some(other) = other {
             let (_, placement) = self.own.character.pose();
-            self.react(&self.scene(&other, placement));
+            self.react(&self.seen(&other, placement));
         }
         let elapsed_us = self.own.go_on(frames);
         if let Some(other) = other {
             let (_, placement) = self.own.character.pose();
-            self.correct(&self.scene(&other, placement), elapsed_us);
+            self.correct(&self.seen(&other, placement), elapsed_us);
         }
         self.show();
     }
@@ -329,7 +337,7 @@ mod tests {
     const BANK: &[u8] = include_bytes!("../../../../motions/character.ptb");
 
     /// Where the wrist is, and where it is to be, when the hand lies on the shoulder.
-    fn touch(source: &MetSource, other: &MetSource) -> [Point; 2] {
+    fn touch(source: &PairedSource, other: &PairedSource) -> [Point; 2] {
         let (pose, placement) = source.own.character.pose();
         let axes = source.axes;
         let wrist = axes.to_world(placement, source.hand.end(pose.values));
@@ -342,10 +350,10 @@ mod tests {
         let mut bodies = [Body::<64>::new(), Body::new()];
         let [first, second] = &mut bodies;
         let (Ok(steered), Ok(mut other)) = (first.character(BANK), second.character(BANK)) else { panic!("the character") };
-        MetSource::put(&mut other, 245);
+        PairedSource::put(&mut other, 245);
         let meeting = Meeting::default();
         let source =
-            |character, keys, role| MetSource::new(SteeredSource::new(character, keys, 0, Mode::Sync, 0), role, &meeting);
+            |character, keys, role| PairedSource::new(SteeredSource::new(character, keys, 0, Mode::Sync, 0), role, &meeting);
         let mut steered = source(steered, &CHARACTER_KEYS, Role::Steered).unwrap();
         let mut other = source(other, &[], Role::Other).unwrap();
         let (mut states, mut touched) = (vec![], 0);
@@ -357,7 +365,7 @@ mod tests {
             }
             steered.advance(1);
             other.advance(1);
-            let state = |source: &MetSource| source.own.character.table().state_name(source.own.character.state()).to_string();
+            let state = |source: &PairedSource| source.own.character.table().state_name(source.own.character.state()).to_string();
             if states.last() != Some(&state(&other)) {
                 states.push(state(&other));
             }
