@@ -105,16 +105,18 @@ fn drops_no_frame(name: &str, clip: PathBuf, features: &str, words: &[&str], eac
     let mean = |kind: usize| pictures.iter().map(|picture| u64::from(picture[kind].cycles)).sum::<u64>() / pictures.len() as u64;
     let instructions = pictures.iter().map(|picture| picture.iter().map(|stretch| u64::from(stretch.instructions)).sum::<u64>());
     let most = pictures.iter().map(|picture| picture.iter().map(|stretch| stretch.cycles).sum::<u32>()).max().unwrap();
+    let there = FRAME_CYCLES * each as u32;
     println!(
-        "{name}: {shown} frames shown, none dropped; cycles a frame: decode {}, kinematics {}, draw {}, page {}; at most {most} of {FRAME_CYCLES}; \
+        "{name}: {shown} frames shown, none dropped; cycles a frame: decode {}, kinematics {}, draw {}, page {}; at most {most} of {}; \
          {} instructions; {each} display frames a picture",
         mean(0),
         mean(1),
         mean(2),
         mean(3) + mean(4),
+        there,
         instructions.sum::<u64>() / pictures.len() as u64
     );
-    assert!(most < FRAME_CYCLES * each as u32);
+    assert!(most < there);
 }
 
 /// Plays a clip of the image with lines.

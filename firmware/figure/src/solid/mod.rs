@@ -23,7 +23,7 @@
 //! # When lines are better
 //!
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
-//! figures take seven times as many or more.
+//! figures take six to seven times as many.
 
 mod attach;
 mod floor;
@@ -505,7 +505,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         } else if shaded {
             // 0.42 of the mean radius towards the lower right.
             let sum: i32 = part.circles.iter().map(|circle| circle[2]).sum();
-            let mean = sum / (part.circles.len() as i32).max(1);
+            let mean = divided(sum, part.circles.len());
             let shift = |parts: i32| ((mean * parts) >> 12).clamp(1, MARGIN - 2);
             let shade = ((u32::from(light) * tint::SHADE) >> 8) as Light;
             Fill::Shaded(lit, S::Ink::tint(&part.tint, shade), [shift(62), shift(87)])
@@ -547,7 +547,18 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 #[inline(never)]
 fn open_at(circles: &[hull::Circle], index: usize) -> Cut {
     let Some(own) = circles.get(index) else { return Cut::None };
-    let others = (circles.len() as i32 - 1).max(1);
+    let others = circles.len().saturating_sub(1);
     let [x, y] = circles.iter().fold([0; 2], |[x, y], circle| [x + circle[0], y + circle[1]]);
-    Cut::at(own, [(x - own[0]) / others - own[0], (y - own[1]) / others - own[1]])
+    Cut::at(own, [divided(x - own[0], others) - own[0], divided(y - own[1], others) - own[1]])
+}
+
+/// A sum over up to four circles, divided by their number: by constants, as a small processor has no instruction for it.
+#[inline(never)]
+fn divided(sum: i32, count: usize) -> i32 {
+    match count {
+        0 | 1 => sum,
+        2 => sum / 2,
+        3 => sum / 3,
+        _ => sum / 4,
+    }
 }

@@ -263,14 +263,6 @@ fn draw_outline<S: Surface>(surface: &mut S, rows: &Rows, [first, last]: [i32; 2
     }
     let reaches = outline.reaches();
     for (window, row) in spans.windows(2 * wide as usize + 1).zip(first..) {
-        // The width of figures of 165 to 274 pixels: it reaches two pixels to the side of the rows beside, and one of those beyond.
-        if let [far, above, own, below, beyond] = window {
-            let (own, above, below) = (wide_of(own), wide_of(above), wide_of(below));
-            let low = (own[0].min(above[0]).min(below[0]) - 2).min(i32::from(far[0].min(beyond[0])) - 1);
-            let high = (own[1].max(above[1]).max(below[1]) + 2).max(i32::from(far[1].max(beyond[1])) + 1);
-            beside(row, own, low, high);
-            continue;
-        }
         let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
         let own = wide_of(middle);
         let (mut low, mut high) = (own[0] - wide, own[1] + wide);
