@@ -51,8 +51,19 @@ pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {
 /// The folders and files of our motions, in the order in which boards play them: first those of a body, then faces.
 const MOTIONS: [&str; 6] = ["walk.keys", "greet.keys", "library", "face", "kneebend.keys", "emotes"];
 
+/// What a figure is drawn as, and with that what a clip keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// Lines between joints: their places alone are bounded.
+    Lines,
+    /// A body with volume: joints keep how they are turned, too, as the head does.
+    Solid,
+}
+
 /// Converts all our motions to clips of 60 frames per second in `folder`. Those of the library are one bank.
-pub fn own(folder: &Path) -> Result<Vec<PathBuf>> {
+pub fn own(folder: &Path, drawn: Drawn) -> Result<Vec<PathBuf>> {
+    let places = if drawn == Drawn::Lines { &["--places-only"][..] } else { &[] };
+    let convert_own = |motions: &[&Path], words: &[&str], out: &Path| convert_own(motions, &[places, words].concat(), out);
     let mut clips = vec![];
     for name in MOTIONS {
         let motion = paths::root().join("motions").join(name);
@@ -77,16 +88,22 @@ pub fn own(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(clips)
 }
 
+/// Converts a motion to a clip of this rate whose joints keep how they are turned.
+pub fn convert_at(motion: &Path, rate: u32, clip: &Path) -> Result<()> {
+    let output = Command::new(build::host_tool()?)
+        .args(["convert", "--segments", "--quiet", "--fps", &rate.to_string()])
+        .arg(motion)
+        .arg("-o")
+        .arg(clip)
+        .output();
+    let output = output.context("cannot start the host tool")?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
+    Ok(())
+}
+
 fn convert_own(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
     let mut command = Command::new(build::host_tool()?);
-    // The figures are drawn as lines between joints.
-    command
-        .args(["convert", "--places-only", "--segments"])
-        .args(motions)
-        .args(["--fps", "60", "--quiet"])
-        .args(words)
-        .arg("-o")
-        .arg(out);
+    command.args(["convert", "--segments"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
     let output = command.output().context("cannot start the host tool")?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(())

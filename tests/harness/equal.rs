@@ -10,10 +10,22 @@ use crate::{defmt_log, screen};
 /// Plays a picture, and one more after each of the keys' letters, and compares each, and its frame's number, with `expected`: panics
 /// where they differ. Returns the instructions of each of the frame's regions.
 pub fn shows(machine: Machine, firmware: &Firmware, expected: &[(u32, Picture)], keys: &[&[u8]]) -> Vec<Stats> {
+    shows_with(machine, firmware, &[], expected, keys)
+}
+
+/// Like [`shows`], with options of the firmware's command line.
+pub fn shows_with(
+    machine: Machine,
+    firmware: &Firmware,
+    words: &[&str],
+    expected: &[(u32, Picture)],
+    keys: &[&[u8]],
+) -> Vec<Stats> {
     let folder = tempfile::tempdir().unwrap();
     let counts = folder.path().join("counts");
     let plugin = icount::plugin(machine.emulator).unwrap();
     let launch = Launch::new(machine, firmware.elf()).counting(&plugin, &counts);
+    let launch = words.iter().fold(launch, |launch, word| launch.argument((*word).to_owned()));
     let mut session = Session::start(launch).unwrap();
     for (index, (number, picture)) in expected.iter().enumerate() {
         let letters = index.checked_sub(1).map_or(&[][..], |before| keys[before]);

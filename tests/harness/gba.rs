@@ -19,19 +19,24 @@ pub const TARGET: &str = "armv4t-none-eabi";
 pub const LCD: Display = Display { width: 240, height: 160, depth: Depth::Bgr555, way: Way::Bus("gba") };
 /// Clock cycles of a frame of the display.
 pub const FRAME_CYCLES: u32 = 280_896;
-/// Most bytes of an image with all our motions.
+/// Most bytes of an image with all our motions, whose figures are lines.
 pub const MOST: usize = 256 * 1024;
+/// The same of one whose bodies have volume: joints keep how they are turned.
+pub const MOST_SOLID: usize = 384 * 1024;
 
 /// Where cartridges begin in the console's memory.
 const CARTRIDGE: u64 = 0x0800_0000;
 const HEADER: usize = 0xc0;
 
-/// Builds the program with these clips and returns the cartridge's image.
-pub fn image(clips: &[&Path]) -> Result<Vec<u8>> {
-    of_elf(
-        &std::fs::read(Firmware::featuring("face,steer", "gba", "gba", TARGET, clips)?.elf())
-            .context("the program cannot be read")?,
-    )
+/// Features of the program that draws lines, and of the one that draws bodies with volume.
+pub const LINES: &str = "face,steer";
+/// See [`LINES`].
+pub const SOLID: &str = "face,steer,solid,neck";
+
+/// Builds the program with these features and clips, and returns the cartridge's image.
+pub fn image(features: &str, clips: &[&Path]) -> Result<Vec<u8>> {
+    let firmware = Firmware::featuring(features, "gba", "gba", TARGET, clips)?;
+    of_elf(&std::fs::read(firmware.elf()).context("the program cannot be read")?)
 }
 
 /// Returns the cartridge's image of a linked program.

@@ -164,7 +164,7 @@ fn the_esp32_c3_maps_its_slots_with_the_cache_and_interrupts_off() {
 fn an_image_has_the_same_bytes_each_time_and_none_of_this_machine() {
     let images = download::BOARDS[0].images();
     let folder = tempfile::tempdir().unwrap();
-    let clips = clips::own(folder.path()).unwrap();
+    let clips = clips::own(folder.path(), clips::Drawn::Lines).unwrap();
     let file = images[0].build(&clips).unwrap();
     // Another program of the same folder, after which the first is built again.
     let other = images[2].build(&clips).unwrap();

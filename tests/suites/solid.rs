@@ -52,3 +52,25 @@ fn a_risc_v_shows_the_hosts_solid_figure() {
 fn a_phone_shows_the_hosts_solid_figure_in_colour() {
     shows_what_the_host_shows(SX1);
 }
+
+#[test]
+fn a_cortex_m4_shows_the_hosts_face_on_the_neck() {
+    const MACHINE: Machine = MPS2_AN386;
+    if setup::host_only("a face on the neck") {
+        return;
+    }
+    let clip = paths::root().join("motions/greet.ptn");
+    let firmware = Firmware::featuring("neck", MACHINE.name, MACHINE.name, MACHINE.target, &[&clip]).unwrap();
+    // From all sides, then as lines, which have no face.
+    let keys: Vec<&[u8]> = std::iter::repeat_n(&b"dd"[..], 13).chain([&b"o"[..], b"o"]).collect();
+    let words = ["solid", "neck"];
+    let expected = simulator::play::<Rotation>(MACHINE.display.unwrap(), &[clip.clone()], &words, &keys).unwrap();
+    let beside = simulator::play::<Rotation>(MACHINE.display.unwrap(), &[clip], &["solid"], &keys).unwrap();
+    assert!(expected.iter().zip(&beside).all(|(neck, beside)| neck.1 != beside.1));
+    let means: Vec<f64> =
+        equal::shows_with(MACHINE, &firmware, &words, &expected, &keys).iter().map(|kind| kind.mean()).collect();
+    println!(
+        "{} pictures with a face on the neck are equal; instructions per frame: {FRAME_REGIONS:?} {means:.0?}",
+        expected.len()
+    );
+}

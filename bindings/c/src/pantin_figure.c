@@ -763,6 +763,7 @@ pantin_result pantin_figure_set_up(pantin_figure *f, pantin_player *player, uint
     t.count = (uint8_t)clip->rig.joints;
     f->width = width;
     f->height = height;
+    f->offset[0] = f->offset[1] = 0;
     source->error = PANTIN_OK;
     result = build(f, clip, player->pose, &t);
     if (source->error != PANTIN_OK) result = source->error;
@@ -1070,8 +1071,8 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
     }
     scale = clamp(least(fit(f->height, e.bottom - e.top), fit(f->width, 2 * e.side)), 1, TRIAL_SCALE);
     set_camera(f, &b, up, facing, view, scale);
-    f->centre[0] = ((int32_t)f->width << 4) / 2;
-    f->centre[1] = ((int32_t)f->height << 4) / 2 - (e.top + e.bottom) / 2 * scale / TRIAL_SCALE;
+    f->centre[0] = (int32_t)f->offset[0] * 16 + ((int32_t)f->width << 4) / 2;
+    f->centre[1] = (int32_t)f->offset[1] * 16 + ((int32_t)f->height << 4) / 2 - (e.top + e.bottom) / 2 * scale / TRIAL_SCALE;
     if (result == PANTIN_OK) result = pantin_seek(player, now);
     if (result == PANTIN_OK) return PANTIN_OK;
     /* It is still the frame to which the next call goes back. */
@@ -1081,6 +1082,8 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
 }
 
 void pantin_figure_shift(pantin_figure *f, int16_t x, int16_t y) {
+    f->offset[0] = (int16_t)(f->offset[0] + x);
+    f->offset[1] = (int16_t)(f->offset[1] + y);
     f->centre[0] += (int32_t)x * 16;
     f->centre[1] += (int32_t)y * 16;
 }

@@ -100,6 +100,7 @@ typedef struct pantin_figure {
     uint16_t bone_count, drive_count, slot_count; /* those in use */
     uint16_t line_count;      /* bones that are lines */
     uint16_t width, height;   /* of the display, pixels */
+    int16_t offset[2];        /* by pantin_figure_shift: pixels to the right and down */
     uint16_t hips;            /* index of the bone that the camera follows */
     uint8_t up;               /* of the rig */
     uint8_t sides[2];         /* a bone of the left side and its counterpart, or 255 */
@@ -175,7 +176,7 @@ void pantin_first_ground(pantin_ground *ground, const pantin_figure *figure);
  * there is none. */
 int pantin_next_ground(pantin_ground *ground, pantin_line *line);
 
-/* Moves the picture by whole pixels. pantin_figure_aim moves it back. */
+/* Moves the picture by whole pixels to the right and down. Cameras that are set up later keep it there, until pantin_figure_set_up. */
 void pantin_figure_shift(pantin_figure *figure, int16_t x, int16_t y);
 
 #ifdef __cplusplus

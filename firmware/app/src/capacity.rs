@@ -127,6 +127,27 @@ pub trait Renderer {
     /// Draws the figure on a framebuffer.
     fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: Style);
 
+    /// Draws the figure on a framebuffer, and the face of a body with volume by `face`.
+    #[cfg(feature = "neck")]
+    fn draw_with_face<L: Layout>(
+        &mut self,
+        framebuffer: &mut Framebuffer<L>,
+        style: Style,
+        face: impl FnMut(&mut Framebuffer<L>, &pantin_figure::solid::HeadPose),
+    );
+
+    /// Leaves the face of a body with volume out. The camera is set up after it.
+    #[cfg(feature = "neck")]
+    fn set_bare_face(&mut self);
+
+    /// Returns the radius of a person's head in pixels.
+    #[cfg(feature = "neck")]
+    fn head_radius(&self) -> u16;
+
+    /// Returns whether the figure is a person.
+    #[cfg(feature = "neck")]
+    fn is_person(&self) -> bool;
+
     /// Returns the number of bones that are drawn.
     fn bones(&self) -> usize;
 }
@@ -210,6 +231,38 @@ impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
         #[cfg(not(feature = "solid"))]
         let figure = self;
         figure.draw_on(framebuffer, style.lines);
+    }
+
+    #[cfg(feature = "neck")]
+    #[inline(always)]
+    fn draw_with_face<L: Layout>(
+        &mut self,
+        framebuffer: &mut Framebuffer<L>,
+        style: Style,
+        face: impl FnMut(&mut Framebuffer<L>, &pantin_figure::solid::HeadPose),
+    ) {
+        if style.solid {
+            return Figure::draw_with_face(self, framebuffer, style.lines.ground, face);
+        }
+        self.lines().draw_on(framebuffer, style.lines);
+    }
+
+    #[cfg(feature = "neck")]
+    #[inline(always)]
+    fn set_bare_face(&mut self) {
+        Figure::set_bare_face(self, true);
+    }
+
+    #[cfg(feature = "neck")]
+    #[inline(always)]
+    fn head_radius(&self) -> u16 {
+        Figure::head_radius(self)
+    }
+
+    #[cfg(feature = "neck")]
+    #[inline(always)]
+    fn is_person(&self) -> bool {
+        self.build() == pantin_figure::solid::Build::Person
     }
 
     #[inline(always)]

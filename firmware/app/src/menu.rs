@@ -82,9 +82,8 @@ fn choose(view_state: &mut ViewState, item: Item) -> Effect {
             let lines = &mut view_state.style.lines;
             #[cfg(feature = "solid")]
             if lines.smooth || view_state.style.solid {
-                view_state.style.solid = !view_state.style.solid;
                 lines.smooth = false;
-                return Effect::Nothing;
+                return view_state.apply(Command::Style);
             }
             lines.smooth = !lines.smooth;
         }
@@ -130,6 +129,14 @@ mod tests {
         apply(&mut view_state, Command::PreviousClip);
         apply(&mut view_state, Command::Menu);
         assert_eq!(view_state.menu, None);
+    }
+
+    #[cfg(feature = "solid")]
+    #[test]
+    fn the_camera_is_set_up_for_a_style_that_the_menu_chooses() {
+        let mut view_state = ViewState::new(&Options { solid: true, ..Options::parse([]) });
+        view_state.menu = ITEMS.iter().position(|item| *item == Item::Style);
+        assert_eq!(apply(&mut view_state, Command::Pause), Effect::Aim);
     }
 
     #[test]

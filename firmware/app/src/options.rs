@@ -36,6 +36,9 @@ pub struct Options {
     /// The character of the character that another one meets.
     #[cfg(all(feature = "meet", feature = "solid"))]
     pub other_look: pantin_figure::solid::Look,
+    /// Whether the face of a clip with a body and a face is on the neck of a body with volume.
+    #[cfg(feature = "neck")]
+    pub neck: bool,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
     /// Whether the display stays lit when nobody gives a command for ten minutes.
@@ -66,7 +69,7 @@ pub enum Key {
 }
 
 impl Options {
-    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info`, `awake` and `figures=N`, with the feature `solid` also `solid`, with the feature `link` also `link` and
+    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info`, `awake` and `figures=N`, with the feature `solid` also `solid`, with the feature `neck` also `neck`, with the feature `link` also `link` and
     /// `fec`, with the feature `key` also `key=HEX`. Other words are ignored: an emulator without arguments passes the program's path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
         let mut options = Options {
@@ -79,6 +82,8 @@ impl Options {
             look: pantin_figure::solid::Look::DEFAULT,
             #[cfg(all(feature = "meet", feature = "solid"))]
             other_look: pantin_figure::solid::Look::DEFAULT,
+            #[cfg(feature = "neck")]
+            neck: false,
             hud: false,
             awake: false,
             figures: 1,
@@ -94,6 +99,8 @@ impl Options {
                 None if word == "sync" => options.mode = Mode::Sync,
                 #[cfg(feature = "solid")]
                 None if word == "solid" => options.solid = true,
+                #[cfg(feature = "neck")]
+                None if word == "neck" => options.neck = true,
                 None if word == "smooth" => options.smooth = true,
                 #[cfg(feature = "link")]
                 None if word == "link" => options.link = true,

@@ -15,6 +15,9 @@ pub(crate) struct ViewState {
     #[cfg(feature = "face")]
     pub ahead: View,
     pub style: Style,
+    /// That of [`Options::neck`].
+    #[cfg(feature = "neck")]
+    pub neck: bool,
     pub paused: bool,
     /// Frames run backwards.
     pub backwards: bool,
@@ -72,6 +75,8 @@ impl ViewState {
             #[cfg(feature = "face")]
             ahead: View { orbit: options.orbit.map_or(View::default().orbit, |_| 0), ..View::default() },
             style,
+            #[cfg(feature = "neck")]
+            neck: options.neck,
             paused: false,
             backwards: false,
             rate_log2: 0,

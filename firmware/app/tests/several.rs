@@ -88,6 +88,17 @@ fn a_letter_and_a_button_turn_the_view_of_all_figures() {
 }
 
 #[test]
+fn each_figure_stays_in_its_column_when_the_view_changes() {
+    let turned = play(Mock { letter: Some((1, b'v')), ..Mock::default() }, Mode::Frames(PICTURES));
+    for picture in &turned.pictures {
+        // Above the floor, whose dots reach beyond a figure's column.
+        let lit =
+            |columns: std::ops::Range<usize>| columns.into_iter().any(|x| (4..40).any(|y| picture[y * Oled::WIDTH + x] > 0));
+        assert!(lit(16..48) && lit(80..112) && !lit(0..16) && !lit(48..80) && !lit(112..128));
+    }
+}
+
+#[test]
 fn pause_and_speed_are_those_of_all_figures() {
     let paused = play(Mock { letter: Some((1, b' ')), ..Mock::default() }, Mode::Frames(PICTURES));
     assert!(paused.pictures.iter().all(|picture| *picture == paused.pictures[0]));

@@ -2,6 +2,9 @@
 
 fn main() {
     board_build::memory_map("memory.x");
+    // What is drawn lies in the fast RAM: there is no room for both styles.
+    let solid = std::env::var_os("CARGO_FEATURE_SOLID").is_some();
+    board_build::memory_map_part(if solid { "fast-solid.x" } else { "fast-lines.x" }, "fast.x");
     board_build::link(&["--nmagic", "-Tmemory.x"]);
     board_build::capacity(board_build::clips(), MOST);
 }

@@ -13,6 +13,7 @@ use embedded_graphics::draw_target::DrawTarget;
 use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::lines::Line;
 use pantin_figure::rotation::Rotation;
+use pantin_figure::solid::HeadPose;
 use pantin_figure::surface::{OnTarget, Surface};
 use pantin_figure::{Canvas, Ink};
 
@@ -39,6 +40,9 @@ pub struct FaceRenderer<const N: usize> {
 /// Facing and outline are found again for every 2^26 of 2^-32 turns (5.6 degrees): an outline that is half of that late is exact to 1/800
 /// of the head.
 const ROUNDED_BITS: u32 = 26;
+
+/// A head that looks at the camera by less than this has no face: 256 looks straight at it.
+const LEAST_TOWARD: i32 = 48;
 
 /// The head's angles, and the point about which it rotates.
 type HeadRotation = ([i32; 3], Vertex);
@@ -83,6 +87,26 @@ impl<const N: usize> FaceRenderer<N> {
         self.before = None;
         self.camera.centre[0] += i32::from(x) << PIXEL_BITS;
         self.camera.centre[1] += i32::from(y) << PIXEL_BITS;
+    }
+
+    /// Sets the renderer up for the head of a solid figure, whose skull has a radius of about `radius` pixels. Such a face is drawn
+    /// by [`FaceRenderer::draw_on_head`].
+    #[inline(never)]
+    pub fn set_up_on_head(&mut self, model: &Model, radius: u16) {
+        let height = radius.saturating_mul(5) / 3;
+        self.set_up(model, Canvas { width: height.saturating_mul(2), height }, FaceView::default());
+    }
+
+    /// Draws the face of `morph` on the head of a solid figure, if the head shows it:
+    /// [`SolidFigure::draw_with_face`](pantin_figure::solid::SolidFigure::draw_with_face) passes both.
+    pub fn draw_on_head<S: Surface>(&mut self, model: &Model, morph: &Morph<N>, surface: &mut S, head: &HeadPose) {
+        if head.toward() < LEAST_TOWARD {
+            return;
+        }
+        (self.before, self.rounded) = (None, None);
+        self.camera.put_on(head);
+        self.project(model, morph);
+        self.draw_on(model, surface);
     }
 
     /// Projects the vertices of `morph`. `model` is the one that the renderer was set up for.

@@ -17,6 +17,8 @@ pub struct FigureRenderer<const N: usize, R: RotationBackend = Rotation> {
     skeleton: Skeleton<N>,
     orientation: Orientation,
     canvas: Canvas,
+    /// Pixels by which [`FigureRenderer::shift`] moves the canvas to the right and down.
+    offset: [i16; 2],
     camera: Camera,
     /// The camera's axes, in the form of the joints' rotations.
     view: R,
@@ -65,6 +67,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             skeleton: Skeleton::empty(),
             orientation: Orientation::UPRIGHT,
             canvas: Canvas { width: 0, height: 0 },
+            offset: [0; 2],
             camera: Camera::NOWHERE,
             view: R::NONE,
             target: [0; 3],
@@ -93,6 +96,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         player.rewind();
         self.skeleton.set_up(&player.clip().rig(), Detail::Body, player.pose(), scratch)?;
         self.canvas = canvas;
+        self.offset = [0; 2];
         self.choose();
         Ok(())
     }
@@ -222,7 +226,8 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         let scale = frame.scale(self.canvas);
         set_camera(self, scale);
         let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
-        self.camera.set_center(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
+        let [right, down] = self.offset.map(|pixels| i32::from(pixels) << PIXEL_BITS);
+        self.camera.set_center(right + columns / 2, down + rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
     /// Takes a pose: forward kinematics, and where the camera sees the joints. A pose of another form than the clip's is refused.
@@ -455,6 +460,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     pub(crate) fn share_camera(&mut self, other: &Self) {
         self.orientation = other.orientation;
         self.canvas = other.canvas;
+        self.offset = other.offset;
         self.camera = other.camera;
         self.view = other.view;
         self.ground = other.ground;
@@ -475,8 +481,10 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         &self.camera
     }
 
-    /// Moves the picture by whole pixels: a place among several figures.
+    /// Moves the picture by whole pixels: a place among several figures. Cameras that are set up later keep it there, until
+    /// [`FigureRenderer::set_up`].
     pub fn shift(&mut self, x: i16, y: i16) {
+        self.offset = [self.offset[0].saturating_add(x), self.offset[1].saturating_add(y)];
         let (_, _, [column, row]) = self.camera.framing();
         self.camera.set_center(column + (i32::from(x) << PIXEL_BITS), row + (i32::from(y) << PIXEL_BITS));
     }

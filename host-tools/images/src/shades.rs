@@ -11,8 +11,8 @@ use pantin_figure::FigureRenderer;
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::lines::Line;
-use pantin_figure::solid::SolidFigure;
-use pantin_figure::surface::OnTarget;
+use pantin_figure::solid::{HeadPose, SolidFigure};
+use pantin_figure::surface::{OnTarget, Surface};
 use std::convert::Infallible;
 
 /// What a pixel shows.
@@ -36,6 +36,19 @@ impl Ink for Mark {
     fn of(body_part: BodyPart, shade: u8) -> Mark {
         Mark { body_part, shade, rgb: None }
     }
+}
+
+/// A face on the head of a solid figure.
+pub trait HeadFace {
+    /// Draws it.
+    fn draw<S: Surface>(&mut self, surface: &mut S, head: &HeadPose);
+}
+
+/// The figure's own face, which it draws itself.
+struct OwnFace;
+
+impl HeadFace for OwnFace {
+    fn draw<S: Surface>(&mut self, _: &mut S, _: &HeadPose) {}
 }
 
 /// The display's pixels.
@@ -80,12 +93,24 @@ impl Shades {
 
     /// Draws a pose of a solid figure as the firmware does: on a display of two colours, of 16 greys, or of hues, as the palette has them.
     pub fn draw_solid<const N: usize>(&mut self, figure: &mut SolidFigure<N>, pose: Pose<'_>, floor: bool, depth: Depth) {
+        self.draw_solid_with(figure, pose, floor, depth, &mut OwnFace);
+    }
+
+    /// Draws a pose of a solid figure with a face on its head.
+    pub fn draw_solid_with<const N: usize>(
+        &mut self,
+        figure: &mut SolidFigure<N>,
+        pose: Pose<'_>,
+        floor: bool,
+        depth: Depth,
+        face: &mut impl HeadFace,
+    ) {
         figure.set_pose(pose).expect("the figure was set up for this clip");
         self.marks.fill(Mark::DARK);
         match depth {
-            Depth::Bits => figure.draw_on(&mut OnTarget::new(&mut Bits(self)), floor),
-            Depth::Greys => figure.draw_on(&mut OnTarget::new(&mut Greys(self)), floor),
-            Depth::Hues => figure.draw_on(&mut OnTarget::new(&mut Hues(self)), floor),
+            Depth::Bits => figure.draw_with_face(&mut OnTarget::new(&mut Bits(self)), floor, |s, head| face.draw(s, head)),
+            Depth::Greys => figure.draw_with_face(&mut OnTarget::new(&mut Greys(self)), floor, |s, head| face.draw(s, head)),
+            Depth::Hues => figure.draw_with_face(&mut OnTarget::new(&mut Hues(self)), floor, |s, head| face.draw(s, head)),
         }
     }
 

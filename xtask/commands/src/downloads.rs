@@ -37,7 +37,7 @@ impl Images {
         let out = if self.out.is_absolute() { self.out } else { paths::root().join(self.out) };
         std::fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
-        let clips = clips::own(folder.path())?;
+        let clips = clips::own(folder.path(), clips::Drawn::Lines)?;
         let mut files = vec![];
         for board in BOARDS.iter().filter(|board| self.board.is_empty() || self.board.iter().any(|name| name == board.package)) {
             for image in board.images() {

@@ -1,5 +1,7 @@
 //! Chooses what a clip is drawn as.
 
+#[cfg(feature = "neck")]
+use super::neck;
 use super::{AnyContent, body};
 #[cfg(feature = "face")]
 use super::{both, face};
@@ -17,6 +19,10 @@ pub(crate) fn build<B: Board>(
     if face::is_in::<B::Layout>(player.clip()) {
         return match player.clip().rig().joint_count() {
             0 => face::build(player, context, then),
+            #[cfg(feature = "neck")]
+            _ if context.view_state.neck && context.view_state.style.solid && neck::is_there::<B>(player) => {
+                neck::build(player, context, then)
+            }
             _ => both::build(player, context, then),
         };
     }

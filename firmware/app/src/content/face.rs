@@ -69,14 +69,41 @@ pub(super) fn with<const N: usize, T>(
     [view, ahead]: [View; 2],
     then: impl FnOnce(Face<N>) -> T,
 ) -> Option<T> {
+    let set_up = |renderer: &mut FaceRenderer<N>, model: &Model| {
+        renderer.set_up(model, canvas, face_view(view, ahead));
+        renderer.shift(column, 0);
+    };
+    with_renderer(model, rig, ahead, set_up, then)
+}
+
+/// Builds the face of a model that a clip drives for the head of a body with volume, whose radius in pixels is given. Otherwise like [`with`].
+#[cfg(feature = "neck")]
+#[inline(always)]
+pub(super) fn on_head<const N: usize, T>(
+    model: &'static [u8],
+    rig: &Rig,
+    radius: u16,
+    then: impl FnOnce(Face<N>) -> T,
+) -> Option<T> {
+    let set_up = |renderer: &mut FaceRenderer<N>, model: &Model| renderer.set_up_on_head(model, radius);
+    with_renderer(model, rig, View::default(), set_up, then)
+}
+
+#[inline(always)]
+fn with_renderer<const N: usize, T>(
+    model: &'static [u8],
+    rig: &Rig,
+    ahead: View,
+    set_up: impl FnOnce(&mut FaceRenderer<N>, &Model),
+    then: impl FnOnce(Face<N>) -> T,
+) -> Option<T> {
     let model = Model::new_checked(model).ok()?;
     let mut binding = Binding::EMPTY;
     binding.set_up(rig, &model);
     let mut morph = Morph::EMPTY;
     morph.set_up(&model).ok()?;
     let mut renderer = FaceRenderer::EMPTY;
-    renderer.set_up(&model, canvas, face_view(view, ahead));
-    renderer.shift(column, 0);
+    set_up(&mut renderer, &model);
     info!("{} scalars drive the face", binding.driving());
     Some(then(Face { model: &model, binding: &binding, morph: &mut morph, renderer: &mut renderer, ahead }))
 }
@@ -89,7 +116,7 @@ impl<const N: usize> Face<'_, N> {
 
     /// Moves the vertices. Not inlined: the weights are on the stack only meanwhile.
     #[inline(never)]
-    fn shape(&mut self, pose: &[i32]) {
+    pub(super) fn shape(&mut self, pose: &[i32]) {
         let mut weights = Weights::new();
         self.binding.read(pose, &mut weights);
         self.morph.apply(self.model, &weights);
@@ -97,6 +124,12 @@ impl<const N: usize> Face<'_, N> {
 
     pub(super) fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>) {
         self.renderer.draw_on(self.model, framebuffer);
+    }
+
+    /// Draws it on the head of a body with volume.
+    #[cfg(feature = "neck")]
+    pub(super) fn draw_on_head<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, head: &pantin_figure::solid::HeadPose) {
+        self.renderer.draw_on_head(self.model, self.morph, framebuffer, head);
     }
 
     pub(super) fn aim(&mut self, view: View) {

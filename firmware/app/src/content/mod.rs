@@ -9,6 +9,8 @@ mod both;
 pub(crate) mod build;
 #[cfg(feature = "face")]
 mod face;
+#[cfg(feature = "neck")]
+mod neck;
 
 use crate::capacity::Style;
 use pantin::{Player, Pose};

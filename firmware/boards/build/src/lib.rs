@@ -86,6 +86,11 @@ pub fn memory_map(path: &str) {
     script(path, "memory.x", "the board's memory map");
 }
 
+/// Copies a part of a memory map, which includes it by this name.
+pub fn memory_map_part(path: &str, name: &str) {
+    script(path, name, "a part of the board's memory map");
+}
+
 /// Copies the names of a board's interrupts to where the linker looks for `device.x`.
 pub fn interrupts(path: &str) {
     script(path, "device.x", "the board's interrupts");

@@ -44,6 +44,8 @@ fn options<B: Board>(board: &mut B) -> Options {
         solid: true,
         #[cfg(feature = "solid")]
         look: crate::LOOK,
+        #[cfg(feature = "neck")]
+        neck: true,
         #[cfg(feature = "link")]
         link: true,
         ..Options::parse([])

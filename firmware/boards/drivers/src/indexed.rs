@@ -92,12 +92,34 @@ impl Ink for Indexed {
     /// The colour of the default character's material that is nearest; the brightness below.
     #[inline(never)]
     fn tint(tint: &Tint, light: Light) -> Self {
-        let apart = |own: &Tint| own.rgb.iter().zip(tint.rgb).map(|(own, other)| u32::from(own.abs_diff(other))).sum::<u32>();
-        let nearest = Look::DEFAULT_TINTS.iter().enumerate().min_by_key(|(_, own)| apart(own));
-        let material = nearest.map_or(0, |(index, _)| index as u8);
+        // The default character's own colours, without a search for the nearest one: a figure asks for fifty a picture.
+        let [red, green, blue] = tint.rgb;
+        let wanted = u32::from_le_bytes([red, green, blue, 0]);
+        let exact = COLOURS.iter().position(|colour| *colour == wanted);
+        let material = exact.unwrap_or_else(|| nearest(tint)) as u8;
         let darker = (256 - light.min(256)).div_ceil(LIGHT_STEP).min(u16::from(LIGHTS) - 1) as u8;
         Indexed(SOLID + material * LIGHTS + LIGHTS - 1 - darker)
     }
+}
+
+/// Red, green and blue of the default character's materials, from the lowest byte on.
+static COLOURS: [u32; Look::DEFAULT_TINTS.len()] = {
+    let mut colours = [0; Look::DEFAULT_TINTS.len()];
+    let mut index = 0;
+    while index < colours.len() {
+        let [red, green, blue] = Look::DEFAULT_TINTS[index].rgb;
+        colours[index] = u32::from_le_bytes([red, green, blue, 0]);
+        index += 1;
+    }
+    colours
+};
+
+/// The default character's material whose colour is nearest.
+#[inline(never)]
+fn nearest(tint: &Tint) -> usize {
+    let apart = |own: &Tint| own.rgb.iter().zip(tint.rgb).map(|(own, other)| u32::from(own.abs_diff(other))).sum::<u32>();
+    let nearest = Look::DEFAULT_TINTS.iter().enumerate().min_by_key(|(_, own)| apart(own));
+    nearest.map_or(0, |(index, _)| index)
 }
 
 /// Two pixels, the left one in the lower byte: a display's memory may take no single bytes.

@@ -33,7 +33,10 @@ const ALONE: [(u16, Command); 9] = [
 
 /// Their commands while select is held.
 const WITH_SELECT: [(u16, Command); 9] = [
+    #[cfg(not(feature = "solid"))]
     (A, Command::Smooth),
+    #[cfg(feature = "solid")]
+    (A, Command::Style),
     (B, Command::Ground),
     (START, Command::Hud),
     (RIGHT, Command::Step),

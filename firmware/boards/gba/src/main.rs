@@ -20,7 +20,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// What the start screen shows.
 #[cfg(not(feature = "steer"))]
-const HELP: &str = "\n Pantin\n\n A, B          next, previous clip\n arrows        turn, tilt\n L, R          slower, faster\n Start         pause\n Select        front, side, behind\n\n Select and\n  arrows       step, follow, reverse\n  A, B, Start  smooth, ground, text\n\n Press a button.";
+const HELP: &str = "\n Pantin\n\n A, B          next, previous clip\n arrows        turn, tilt\n L, R          slower, faster\n Start         pause\n Select        front, side, behind\n\n Select and\n  arrows       step, follow, reverse\n  A, B, Start  style, ground, text\n\n Press a button.";
 #[cfg(feature = "steer")]
 const HELP: &str = "\n              Pantin\n\n A: steer a character\n  up, with B  walk, run\n  left, right turn\n  down        sit down, stand up\n  A, L, R     jump, bow, wave\n  Start       dance\n  Select      the motions\n\n Others: the motions\n  A, B, Start  next, previous, pause\n  arrows, L, R turn, slower, faster\n  Select       view; with others more";
 /// How long it is shown if no button is pressed: 5 s.
@@ -65,6 +65,8 @@ fn options() -> Options {
         look: board_common::LOOK,
         #[cfg(all(feature = "meet", feature = "solid"))]
         other_look: board_common::OTHER_LOOK,
+        #[cfg(feature = "neck")]
+        neck: true,
         ..Options::parse([])
     }
 }

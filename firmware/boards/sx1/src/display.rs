@@ -60,7 +60,29 @@ pub fn show(frame: &mut Framebuffer<Lcd>) {
             let at = row * (Lcd::WIDTH / Lcd::CELL[0]) + cells.columns[0];
             // Safety: a window lies inside the picture. The memory map reserves this place for a whole picture, and no Rust value lies
             // there.
-            unsafe { ptr::copy_nonoverlapping(stretch.as_ptr(), (&raw mut _pixels).add(at), stretch.len()) };
+            unsafe { copy(stretch, (&raw mut _pixels).add(at)) };
+        }
+    }
+}
+
+/// Copies eight pairs at a time: the library's way takes seven instructions a word.
+///
+/// # Safety
+/// `to` is memory for as many pairs as `from` has, and no Rust value lies there.
+unsafe fn copy(from: &[Pair], mut to: *mut Pair) {
+    let (blocks, rest) = from.as_chunks::<8>();
+    for block in blocks {
+        // Safety: the caller's.
+        unsafe {
+            to.cast::<[Pair; 8]>().write(*block);
+            to = to.add(8);
+        }
+    }
+    for pair in rest {
+        // Safety: the caller's.
+        unsafe {
+            to.write(*pair);
+            to = to.add(1);
         }
     }
 }

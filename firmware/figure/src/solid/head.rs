@@ -7,20 +7,23 @@ use super::tint::{Light, SHADE};
 use crate::ink::Ink;
 use crate::surface::Surface;
 
-/// A head on the display. Vectors are as long as the skull's radius, in sixteenths of a pixel: right, down and away.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Head {
-    /// The skull.
-    pub skull: Circle,
+/// A head on the display. Vectors are as long as the skull's radius, in sixteenths of a pixel: right, down and away from the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HeadPose {
+    /// The skull's middle and radius in sixteenths of a pixel.
+    pub skull: [i32; 3],
+    /// Where the head's upper side is.
     pub up: [i32; 3],
+    /// Where the face looks.
     pub face: [i32; 3],
+    /// Where the head's own left is.
     pub left: [i32; 3],
 }
 
 /// From this radius in sixteenths of a pixel on, eyes and nose have a shape.
 const DETAILED: i32 = 7 << 4;
 
-impl Head {
+impl HeadPose {
     /// A place in 256ths of the skull's radius along face, up and left, from its middle.
     #[inline(never)]
     fn place(&self, [face, up, left]: [i32; 3]) -> [i32; 3] {
@@ -41,12 +44,15 @@ impl Head {
         [self.skull, self.circle([36, -90, 0], (self.skull[2] * 210) >> 8)]
     }
 
-    /// Draws it.
+    /// How far the face looks at the camera: 256 if it looks straight at it, -256 if it looks away.
+    pub fn toward(&self) -> i32 {
+        (-self.face[2] * 256 / self.skull[2].max(1)).clamp(-256, 256)
+    }
+
+    /// Draws it. With `bare_face`, it has no nose and no eyes, and its face is as dark as an outline: another face is drawn on it.
     #[inline(never)]
-    pub(super) fn draw<S: Surface>(&self, painter: &mut Painter<S>, look: &Look, light: Light, width: i32) {
-        let r = self.skull[2];
-        // 256 if the face looks at the camera.
-        let toward = (-self.face[2] * 256 / r.max(1)).clamp(-256, 256);
+    pub(super) fn draw<S: Surface>(&self, painter: &mut Painter<S>, look: &Look, light: Light, width: i32, bare_face: bool) {
+        let (r, toward) = (self.skull[2], self.toward());
         let shade = |light: Light| ((u32::from(light) * SHADE) >> 8) as Light;
         let ink = |material: Material, light: Light| S::Ink::tint(&look.tint(material), light);
         let edge = ink(Material::Edge, 256);
@@ -55,7 +61,7 @@ impl Head {
         let detailed = r >= DETAILED;
         let nose = |far: i32, radius: i32| self.circle([far, -56, 0], radius);
         let nose_radius = ((r * 43) >> 8).max(9);
-        if toward < 26 {
+        if toward < 26 && !bare_face {
             painter.hull(&[nose(271, nose_radius)], false, &outline, &Fill::Plain(ink(Material::Nose, light)));
         }
         let hull = self.hull();
@@ -70,6 +76,9 @@ impl Head {
             false => Fill::Rimmed(ink(Material::Face, 256), ink(Material::Hair, 256)),
         };
         painter.hull(&hull, false, &outline, &hair);
+        if bare_face {
+            return self.face(painter, toward, &hull, &Fill::Plain(edge));
+        }
         self.face(painter, toward, &hull, &shaded(Material::Face, (side / 2).max(1)));
         self.eyes(painter, toward, detailed, &ink(Material::Eye, 256), &bare);
         if toward >= 26 && detailed {

@@ -77,14 +77,14 @@ impl Rows {
         let (from, to) = ((self.first - self.base) as usize, (self.last - self.base) as usize);
         let around = around as usize;
         let cleared = from.saturating_sub(around)..(to + 1 + around).min(ROWS);
-        self.spans.get_mut(cleared).into_iter().flatten().for_each(|span| *span = EMPTY);
+        self.spans.get_mut(cleared).unwrap_or_default().iter_mut().for_each(|span| *span = EMPTY);
         for (index, circle) in circles.iter().enumerate() {
             self.circle(circle, pitch, shift);
             for other in circles.get(index + 1..).unwrap_or(&[]) {
                 self.tangents(circle, other, pitch, shift);
             }
         }
-        for span in self.spans.get_mut(from..=to).into_iter().flatten() {
+        for span in self.spans.get_mut(from..to + 1).unwrap_or_default() {
             *span = pixels(*span);
         }
     }
@@ -124,7 +124,8 @@ impl Rows {
         }
     }
 
-    #[inline(always)]
+    /// Widens the spans by a circle.
+    #[inline(never)]
     fn circle(&mut self, &[x, y, r]: &Circle, pitch: i32, shift: u32) {
         if r <= 0 {
             return;
@@ -137,7 +138,7 @@ impl Rows {
         }
         let used = (first - self.base) as usize..(last - self.base) as usize + 1;
         let mut height = first * pitch + pitch / 2 - y;
-        for [low, high] in self.spans.get_mut(used).into_iter().flatten() {
+        for [low, high] in self.spans.get_mut(used).unwrap_or_default() {
             let index = (height.abs() * reciprocal) >> 16;
             let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
             let half = (r * half + 128) >> 8;

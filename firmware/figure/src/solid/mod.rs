@@ -23,7 +23,7 @@
 //! # When lines are better
 //!
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
-//! figures take seven times as many or more.
+//! figures take six to seven times as many.
 
 mod attach;
 mod floor;
@@ -38,7 +38,7 @@ mod sizes;
 mod tint;
 mod together;
 
-use crate::camera::{Canvas, MAGNIFICATION_BITS, View, magnification};
+use crate::camera::{Canvas, MAGNIFICATION_BITS, PIXEL_BITS, View, magnification};
 use crate::ink::Ink;
 use crate::renderer::{Extent, FigureRenderer, Stand};
 use crate::rotation::{Rotation, RotationBackend, Vector};
@@ -46,7 +46,7 @@ use crate::skeleton::{Part as Role, Skeleton};
 use crate::surface::{OnTarget, Surface};
 use crate::{DrawError, Error, JointInfo, RIG_JOINTS};
 use embedded_graphics::draw_target::DrawTarget;
-use head::Head;
+pub use head::HeadPose;
 use heapless::Vec;
 use joints::Joints;
 use look::MOST_ATTACHMENTS;
@@ -55,7 +55,7 @@ use paint::{Cut, Fill, Outline, Painter};
 use pantin::{Player, Pose, WrongForm};
 use pantin_math::vector::{cross, direction, dot};
 use parts::{Body, HEAD, HUMAN_PARTS};
-use sizes::Sizes;
+use sizes::{HEAD_MIDDLE, Sizes};
 pub use tint::{Light, Pattern, Tint};
 pub use together::{MOST_FIGURES, draw_together};
 
@@ -96,17 +96,17 @@ pub struct SolidFigure<const N: usize, R: RotationBackend = Rotation> {
     sizes: Sizes,
     /// Up, ahead and left in the head's own axes, 2^13 long.
     head_axes: [[i16; 3]; 3],
-    head: Head,
+    head: HeadPose,
     /// Parts, the farthest of the last picture first.
     order: Vec<u8, MOST_PARTS>,
     /// Whether there was a picture since the camera was set up.
     sorted: bool,
     /// Whether cameras make room for the head's volume.
     roomy: bool,
+    /// Whether another face is drawn on the head.
+    bare_face: bool,
 }
 
-/// Thousandths of the height from the head's joint to the skull's middle. The outline is part of the camera's margin.
-const HEAD_MIDDLE: i32 = 62;
 /// Those that a hand reaches from the wrist beyond its radius.
 const HAND_REACH: i32 = 44;
 /// Joints of a person, and how far what hangs on them reaches from each in figure units.
@@ -125,10 +125,11 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             look: Look::DEFAULT,
             sizes: Sizes::NOTHING,
             head_axes: [[0; 3]; 3],
-            head: Head { skull: [0; 3], up: [0; 3], face: [0; 3], left: [0; 3] },
+            head: HeadPose { skull: [0; 3], up: [0; 3], face: [0; 3], left: [0; 3] },
             order: Vec::new(),
             sorted: false,
             roomy: true,
+            bare_face: false,
         }
     }
 
@@ -232,7 +233,9 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         let reach = |thousandths: i32| eighth * thousandths / 125;
         let radius = |of: Radius| i32::from(self.look.radius(of, false));
         let [of_head, chest, hips] = self.look.reaches();
-        let head = HEAD_MIDDLE + radius(Radius::Skull).max(of_head);
+        let larger = if self.bare_face { sizes::larger_skull(self.figure.canvas()) } else { 0 };
+        // The outline is part of the camera's margin.
+        let head = HEAD_MIDDLE + larger * 15 / 8 + radius(Radius::Skull).max(of_head);
         let [left, right] = joints.arms.map(|[.., wrist]| (wrist, reach(HAND_REACH + radius(Radius::Hand))));
         self.roomy.then_some([(joints.head, reach(head)), left, right, (joints.neck, reach(chest)), (joints.hips, reach(hips))])
     }
@@ -243,7 +246,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             Kind::Person(joints) => Some(joints),
             _ => None,
         };
-        self.sizes = Sizes::new(&self.figure, joints, &self.look);
+        self.sizes = Sizes::new(&self.figure, joints, &self.look, self.bare_face);
         self.sorted = false;
     }
 
@@ -251,6 +254,17 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
     pub fn set_look(&mut self, look: Look) {
         self.look = look;
         self.list();
+    }
+
+    /// Leaves the head's own face out, for another one that [`SolidFigure::draw_with_face`] draws, and makes the head larger, the more the fewer
+    /// rows the display has. Set the camera up after it.
+    pub fn set_bare_face(&mut self, bare: bool) {
+        self.bare_face = bare;
+    }
+
+    /// The radius of a person's head in pixels, at the camera's target.
+    pub fn head_radius(&self) -> u16 {
+        (self.sizes.radii[Radius::Skull as usize] >> PIXEL_BITS) as u16
     }
 
     /// What the rig is drawn as.
@@ -322,7 +336,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         let [above, before] = self.sizes.skull;
         let [x, y] = visible.place.map(i32::from);
         let place = |axis: usize| (up[axis] * above + face[axis] * before) >> 8;
-        self.head = Head { skull: [x + place(0), y + place(1), radius], up, face, left };
+        self.head = HeadPose { skull: [x + place(0), y + place(1), radius], up, face, left };
     }
 
     /// Draws the pose that was taken last on a clear surface: the floor, if it is wanted, and the parts from far to near.
@@ -330,6 +344,13 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
     /// A rig of [`Build::Lines`] is drawn as lines.
     #[inline(never)]
     pub fn draw_on<S: Surface>(&mut self, surface: &mut S, floor: bool) {
+        self.draw_with_face(surface, floor, |_, _| {});
+    }
+
+    /// Like [`SolidFigure::draw_on`]. After the head of a person, which [`SolidFigure::set_bare_face`] left without a face, `face` draws one; parts
+    /// before the head cover it.
+    #[inline(always)]
+    pub fn draw_with_face<S: Surface>(&mut self, surface: &mut S, floor: bool, mut face: impl FnMut(&mut S, &HeadPose)) {
         if let Kind::Lines = self.kind {
             return self.figure.draw_on(surface, crate::DrawStyle { ground: floor, smooth: false });
         }
@@ -342,6 +363,9 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         let mut drawn = 0;
         for &part in self.order.iter() {
             body.draw(&mut painter, part, &mut drawn);
+            if part == HEAD && matches!(self.kind, Kind::Person(_)) {
+                face(painter.surface, &self.head);
+            }
         }
     }
 
@@ -449,7 +473,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     fn draw<S: Surface>(&self, painter: &mut Painter<S>, part: u8, drawn: &mut u64) {
         let joints = joints_of(self.kind);
         if joints.is_some() && part == HEAD {
-            self.head.draw(painter, self.look, 256, self.sizes.outline);
+            self.head.draw(painter, self.look, 256, self.sizes.outline, self.sizes.bare_face);
             *drawn |= 4;
             return;
         }
@@ -481,7 +505,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         } else if shaded {
             // 0.42 of the mean radius towards the lower right.
             let sum: i32 = part.circles.iter().map(|circle| circle[2]).sum();
-            let mean = sum / (part.circles.len() as i32).max(1);
+            let mean = divided(sum, part.circles.len());
             let shift = |parts: i32| ((mean * parts) >> 12).clamp(1, MARGIN - 2);
             let shade = ((u32::from(light) * tint::SHADE) >> 8) as Light;
             Fill::Shaded(lit, S::Ink::tint(&part.tint, shade), [shift(62), shift(87)])
@@ -523,7 +547,18 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 #[inline(never)]
 fn open_at(circles: &[hull::Circle], index: usize) -> Cut {
     let Some(own) = circles.get(index) else { return Cut::None };
-    let others = (circles.len() as i32 - 1).max(1);
+    let others = circles.len().saturating_sub(1);
     let [x, y] = circles.iter().fold([0; 2], |[x, y], circle| [x + circle[0], y + circle[1]]);
-    Cut::at(own, [(x - own[0]) / others - own[0], (y - own[1]) / others - own[1]])
+    Cut::at(own, [divided(x - own[0], others) - own[0], divided(y - own[1], others) - own[1]])
+}
+
+/// A sum over up to four circles, divided by their number: by constants, as a small processor has no instruction for it.
+#[inline(never)]
+fn divided(sum: i32, count: usize) -> i32 {
+    match count {
+        0 | 1 => sum,
+        2 => sum / 2,
+        3 => sum / 3,
+        _ => sum / 4,
+    }
 }

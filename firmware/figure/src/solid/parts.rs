@@ -5,7 +5,7 @@ use super::joints::{Joints, NONE};
 use super::look::{Look, Material, RADII, Radius};
 use super::sizes::Sizes;
 use super::tint::Tint;
-use super::{Head, Kind, MOST_PARTS};
+use super::{HeadPose, Kind, MOST_PARTS};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
 use crate::ink::BodyPart;
 use crate::renderer::FigureRenderer;
@@ -68,7 +68,7 @@ pub(super) struct Body<'a, const N: usize, R: RotationBackend> {
     pub kind: &'a Kind,
     pub sizes: &'a Sizes,
     pub look: &'a Look,
-    pub head: &'a Head,
+    pub head: &'a HeadPose,
 }
 
 impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
@@ -154,11 +154,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         // The skull's radius is a known part of the height, and as long as the vectors.
         let radius = self.head.skull[2].max(1);
         self.joint(joints.head)[2]
-            + away * self.sizes.skull[0] / 256 * self.sizes.depth / 1000 * i32::from(self.skull_thousandths()) / radius
-    }
-
-    fn skull_thousandths(&self) -> u8 {
-        self.look.radius(Radius::Skull, self.sizes.small)
+            + away * self.sizes.skull[0] / 256 * self.sizes.depth / 1000 * self.sizes.skull_thousandths / radius
     }
 
     fn waist(&self, joints: &Joints) -> Place {

@@ -2,6 +2,7 @@
 
 use super::joints::{Joints, NONE};
 use super::look::{Look, RADII, Radius};
+use crate::camera::Canvas;
 use crate::joint_info::length;
 use crate::renderer::FigureRenderer;
 use crate::rotation::RotationBackend;
@@ -23,6 +24,10 @@ pub(super) struct Sizes {
     pub radii: [i16; RADII],
     /// The skull's centre above and before the head's joint, in 256ths of its radius.
     pub skull: [i32; 2],
+    /// The skull's radius in thousandths of the height.
+    pub skull_thousandths: i32,
+    /// Another face than that of the figure is drawn on the head.
+    pub bare_face: bool,
     /// How far the hand goes on beyond the wrist, as a part of the way from the wrist to [`Joints::fingers`], or without them of the forearm.
     pub hands: [i16; 2],
     /// Where the neck starts, as a part of the way from its joint to the head: some rigs have it deep in the chest.
@@ -45,6 +50,8 @@ impl Sizes {
         depth: 1,
         radii: [0; RADII],
         skull: [0; 2],
+        skull_thousandths: 1,
+        bare_face: false,
         hands: [0; 2],
         neck: 0,
         toes: [0; 2],
@@ -59,6 +66,7 @@ impl Sizes {
         figure: &FigureRenderer<N, R>,
         joints: Option<&Joints>,
         look: &Look,
+        bare_face: bool,
     ) -> Sizes {
         let bones = &figure.skeleton().bones;
         let mut sizes = Sizes { height: figure.skeleton().size, ..Sizes::NOTHING };
@@ -71,11 +79,18 @@ impl Sizes {
         // A size is 2^13 units of depth; a height has at most 19 bits.
         sizes.depth = ((sizes.height >> 3) * (1 << 10) / (size >> 6).max(1)).max(1);
         sizes.small = sizes.pixels < SMALL;
+        let pixels = |thousandths: i32| (sizes.pixels * thousandths / 1000).clamp(1, 1 << 11) as i16;
         for (radius, thousandths) in sizes.radii.iter_mut().zip(look.radii(sizes.small)) {
-            *radius = (sizes.pixels * i32::from(*thousandths) / 1000).clamp(1, 1 << 11) as i16;
+            *radius = pixels((*thousandths).into());
         }
-        let skull = i32::from(look.radius(Radius::Skull, sizes.small)).max(1);
-        sizes.skull = [62 * 256 / skull, 12 * 256 / skull];
+        let larger = if bare_face { larger_skull(figure.canvas()) } else { 0 };
+        let skull = i32::from(look.radius(Radius::Skull, sizes.small)).max(1) + larger;
+        if bare_face {
+            sizes.radii[Radius::Skull as usize] = pixels(skull);
+        }
+        (sizes.skull_thousandths, sizes.bare_face) = (skull, bare_face);
+        // A larger skull stays on the neck.
+        sizes.skull = [(HEAD_MIDDLE + larger * 7 / 8) * 256 / skull, 12 * 256 / skull];
         // A figure that reaches beyond the display has no thicker outline than one that fills it.
         let most = i32::from(figure.canvas().height) << 4;
         sizes.outline = ((sizes.pixels.min(most) + 8) / (i32::from(look.outline()).max(1) * 16)).clamp(1, 8);
@@ -104,6 +119,14 @@ impl Sizes {
             self.heels[side] = [part(18, way(bones, knee, ankle)), if toes == NONE { 40 } else { part(12, foot) }];
         }
     }
+}
+
+/// Thousandths of the height from the head's joint to the skull's middle.
+pub(super) const HEAD_MIDDLE: i32 = 62;
+
+/// Thousandths of the height by which the skull's radius is larger with another face on it: the fewer rows a display has, the larger the head.
+pub(super) fn larger_skull(canvas: Canvas) -> i32 {
+    (6000 / i32::from(canvas.height).max(1)).min(120)
 }
 
 /// Thousandths of 16 heights as a part of a length.

@@ -166,12 +166,12 @@ impl<L: Layout> Framebuffer<L> {
 }
 
 /// Cells that are filled in the time that it takes to begin.
-const CALL: usize = 16;
+pub(super) const CALL: usize = 16;
 
 /// Eight at a time: the library's way takes three instructions a word. A value that the compiler does not know keeps it from
 /// going that way all the same.
 #[inline(never)]
-fn fill<C: Cell>(cells: &mut [C], with: C) {
+pub(super) fn fill<C: Cell>(cells: &mut [C], with: C) {
     let with = core::hint::black_box(with);
     let (blocks, rest) = cells.as_chunks_mut::<8>();
     for [a, b, c, d, e, f, g, h] in blocks {

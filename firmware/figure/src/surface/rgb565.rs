@@ -1,6 +1,8 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
+use super::frame::{CALL, fill};
 use super::{Cell, InRows, Layout};
+use core::hint::black_box;
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 
@@ -57,17 +59,23 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     fn span(cells: &mut [Pair], y: usize, [from, to]: [usize; 2], ink: Rgb565) {
         let colour = RawU16::from(ink).into_inner();
         let (first, last) = (y * WIDTH + from, y * WIDTH + to);
-        match cells.get_mut(first / 2..(last / 2).wrapping_add(1)).unwrap_or_default() {
-            [] => {}
-            [Pair(only)] => {
-                only[first % 2] = colour;
-                only[last % 2] = colour;
-            }
-            [Pair(left), middle @ .., Pair(right)] => {
-                (left[first % 2], left[1]) = (colour, colour);
-                middle.iter_mut().for_each(|pair| *pair = Pair([colour; 2]));
-                (right[0], right[last % 2]) = (colour, colour);
-            }
+        if first % 2 == 1
+            && let Some(Pair([_, right])) = cells.get_mut(first / 2)
+        {
+            *right = colour;
+        }
+        if last.is_multiple_of(2)
+            && let Some(Pair([left, _])) = cells.get_mut(last / 2)
+        {
+            *left = colour;
+        }
+        let whole = cells.get_mut(first.div_ceil(2)..last.div_ceil(2)).unwrap_or_default();
+        if whole.len() < CALL {
+            // As a word: the compiler would write the same half twice.
+            let both = black_box(Pair([colour; 2]));
+            whole.iter_mut().for_each(|pair| *pair = both);
+        } else {
+            fill(whole, Pair([colour; 2]));
         }
     }
 
@@ -84,5 +92,23 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     #[inline(always)]
     fn get(cells: &[Pair], cursor: InRows<WIDTH>) -> Rgb565 {
         RawU16::new(cells.get(cursor.0 >> 1).map_or(0, |pair| pair.0[cursor.0 & 1])).into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Small = Rgb565Rows<48, 2, 48>;
+
+    #[test]
+    fn a_span_is_its_pixels() {
+        let ink = Rgb565::new(3, 40, 29);
+        for (from, to) in (0..48).flat_map(|from| (from..48).map(move |to| (from, to))) {
+            let (mut spans, mut pixels) = (Small::DARK, Small::DARK);
+            Small::span(&mut spans, 1, [from, to], ink);
+            (from..=to).for_each(|x| Small::put(&mut pixels, Small::cursor(x, 1), ink));
+            assert_eq!(spans, pixels, "{from} {to}");
+        }
     }
 }

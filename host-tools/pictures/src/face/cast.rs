@@ -7,6 +7,9 @@ use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, Weights}
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::lines::Line;
+use pantin_figure::solid::{HeadPose, SolidFigure};
+use pantin_figure::surface::Surface;
+use pantin_images::shades::HeadFace;
 
 /// Returns whether a clip is a face without a body.
 pub fn is_face(clip: &Clip) -> Result<bool> {
@@ -21,6 +24,19 @@ fn has_face(clip: &Clip) -> Result<bool> {
 /// Returns whether a clip has scalars that drive a model.
 pub fn drives(clip: &Clip, model: &Model) -> bool {
     Binding::new(&clip.rig(), model).is_face()
+}
+
+/// A face that is drawn on the head of a solid figure.
+pub struct OnHead<'c, 'f> {
+    cast: &'c mut Cast<'f>,
+    view: usize,
+}
+
+impl HeadFace for OnHead<'_, '_> {
+    fn draw<S: Surface>(&mut self, surface: &mut S, head: &HeadPose) {
+        let Cast { model, morph, looks, .. } = &mut *self.cast;
+        looks[self.view].draw_on_head(model, morph, surface, head);
+    }
 }
 
 /// A face that a clip drives, with a renderer for each view.
@@ -55,6 +71,28 @@ impl<'f> Cast<'f> {
         let looks = views.iter().map(|seen| FaceRenderer::new(&model, canvas, view(seen))).collect();
         let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Box::new(Morph::new(&model)?));
         Ok(Some(Cast { model, binding, weights, morph, looks, column, side: canvas.width.min(canvas.height) }))
+    }
+
+    /// The face of a model on the heads of solid figures, one for each view, or `None` for a clip that has no face.
+    pub fn on_heads<const N: usize>(model: Model<'f>, clip: &Clip, bodies: &[SolidFigure<N>]) -> Result<Option<Cast<'f>>> {
+        if !drives(clip, &model) {
+            return Ok(None);
+        }
+        let on_head = |body: &SolidFigure<N>| {
+            let mut renderer = FaceRenderer::EMPTY;
+            renderer.set_up_on_head(&model, body.head_radius());
+            renderer
+        };
+        let looks = bodies.iter().map(on_head).collect();
+        let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Box::new(Morph::new(&model)?));
+        Ok(Some(Cast { model, binding, weights, morph, looks, column: 0, side: 0 }))
+    }
+
+    /// The face of a pose, to be drawn on the head that the view with index `view` sees.
+    pub fn on_head<'c>(&'c mut self, pose: &[i32], view: usize) -> OnHead<'c, 'f> {
+        self.binding.read(pose, &mut self.weights);
+        self.morph.apply(&self.model, &self.weights);
+        OnHead { cast: self, view }
     }
 
     /// Pixels of the shorter side of its area.

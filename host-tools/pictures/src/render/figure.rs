@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use super::smooth;
-use crate::face::cast::Cast;
+use crate::face::cast::{Cast, drives};
 use anyhow::{Context, Result};
 use pantin::{ChannelState, Clip, Player};
 use pantin_face::Model;
@@ -30,7 +30,16 @@ pub enum Style {
     /// A line for each bone.
     Lines,
     /// A body with volume.
-    Solid(Look),
+    Solid(Look, FacePlace),
+}
+
+/// Where the face of a clip with a body and a face is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacePlace {
+    /// Beside the body.
+    Beside,
+    /// On the body's head, if it is a person's.
+    Neck,
 }
 
 /// Pixels of a side of the larger picture that is reduced to a smooth one.
@@ -62,6 +71,8 @@ pub struct Figure<'a, 'm> {
     /// One for each view; none if the clip has no body.
     bodies: Vec<SolidFigure<RIG_JOINTS>>,
     face: Option<Box<Cast<'a>>>,
+    /// Whether the face is on the body's head.
+    on_neck: bool,
     size: [usize; 2],
     factor: usize,
     style: Style,
@@ -81,7 +92,7 @@ impl<'a, 'm> Figure<'a, 'm> {
         let longest = size[0].max(size[1]);
         let factor = longest.div_ceil(MOST_PIXELS);
         let finer = match (style, lines) {
-            (Style::Solid(_), LineStyle::Smooth) => (REDUCED_FROM / longest).clamp(1, MOST_REDUCED),
+            (Style::Solid(..), LineStyle::Smooth) => (REDUCED_FROM / longest).clamp(1, MOST_REDUCED),
             _ => 1,
         };
         let [width, height] = size.map(|pixels| (pixels * finer).div_ceil(factor) as u16);
@@ -91,22 +102,39 @@ impl<'a, 'm> Figure<'a, 'm> {
         let ahead = |view: &View| (view.orbit, view.tilt) == (View::default().orbit, View::default().tilt);
         let face_view = |view: &View| if has_body && ahead(view) { View { orbit: 0, tilt: 0, ..*view } } else { *view };
         let face_views: Vec<View> = views.iter().map(face_view).collect();
-        let face = Cast::of_model(model, player.clip(), canvas, &face_views)?.map(Box::new);
-        let area = if face.is_some() { canvas.with_face().body } else { canvas };
-        let look = match style {
-            Style::Solid(look) => look,
-            Style::Lines => Look::DEFAULT,
+        let has_face = drives(player.clip(), &model);
+        let (look, on_neck) = match style {
+            Style::Solid(look, place) => (look, place == FacePlace::Neck && has_body && has_face),
+            Style::Lines => (Look::DEFAULT, false),
         };
-        let renderer = |view: &View| {
-            let mut body = SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn")?;
-            if style == Style::Lines {
-                body.make_room(false);
-                body.aim(&mut player, *view);
+        let mut bodies_in = |area: Canvas, on_neck: bool| {
+            let mut body_of = |view: &View| {
+                let mut body = SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn")?;
+                if style == Style::Lines || on_neck {
+                    body.make_room(style != Style::Lines);
+                    body.set_bare_face(on_neck);
+                    body.aim(&mut player, *view);
+                }
+                anyhow::Ok(body)
+            };
+            if has_body { views.iter().map(&mut body_of).collect::<Result<Vec<_>>>() } else { Ok(Vec::new()) }
+        };
+        if on_neck {
+            let bodies = bodies_in(canvas, true)?;
+            if bodies.iter().all(|body| body.build() == Build::Person) {
+                let face = Cast::on_heads(model, player.clip(), &bodies)?.map(Box::new);
+                return Ok(Figure { player, bodies, face, on_neck, size, factor, style, finer });
             }
-            anyhow::Ok(body)
-        };
-        let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };
-        Ok(Figure { player, bodies, face, size, factor, style, finer })
+        }
+        let area = if has_face { canvas.with_face().body } else { canvas };
+        let bodies = bodies_in(area, false)?;
+        let face = Cast::of_model(model, player.clip(), canvas, &face_views)?.map(Box::new);
+        Ok(Figure { player, bodies, face, on_neck: false, size, factor, style, finer })
+    }
+
+    /// Whether the face is on the body's head.
+    pub fn is_face_on_neck(&self) -> bool {
+        self.on_neck
     }
 
     /// What a solid figure is drawn as; none of a clip without joints.
@@ -157,10 +185,15 @@ impl<'a, 'm> Figure<'a, 'm> {
         let [width, height] = self.size;
         let [columns, rows] = self.size.map(|pixels| (pixels * self.finer).div_ceil(self.factor));
         let mut shades = Shades::new(columns, rows);
-        if let Some(body) = self.bodies.get_mut(view) {
-            shades.draw_solid(body, self.player.pose(), true, palette.depth());
+        let (pose, depth) = (self.player.pose(), palette.depth());
+        match (self.bodies.get_mut(view), &mut self.face) {
+            (Some(body), Some(cast)) if self.on_neck => {
+                shades.draw_solid_with(body, pose, true, depth, &mut cast.on_head(pose.values, view));
+            }
+            (Some(body), _) => shades.draw_solid(body, pose, true, depth),
+            (None, _) => {}
         }
-        if let Some(cast) = &mut self.face {
+        if let Some(cast) = self.face.as_mut().filter(|_| !self.on_neck) {
             shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
         }
         let image = shades.image(palette);

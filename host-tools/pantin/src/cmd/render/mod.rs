@@ -17,7 +17,7 @@ use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::drives;
 use pantin_pictures::face::{Face, cartoon, compact};
 use pantin_pictures::render::chart;
-use pantin_pictures::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers, Style};
+use pantin_pictures::render::figure::{FacePlace, Figure, LineStyle, MOST_PIXELS, PlayerBuffers, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 pub use values::{Moment, Side, Size};
@@ -102,9 +102,12 @@ pub struct Arguments {
     /// Use a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
-    /// The face that the clip drives: cartoon, or a model of `pantin face model` [default: Pantin's wireframe head]
+    /// The face that the clip drives: cartoon, or a model of `pantin face model` [default: Pantin's wireframe head; with --face-at neck: cartoon]
     #[arg(long, value_name = "MODEL")]
     face: Option<PathBuf>,
+    /// Where a clip with a body and a face shows its face; neck is for --style solid
+    #[arg(long, value_enum, value_name = "PLACE", default_value = "beside")]
+    face_at: FaceAt,
     /// How a unit of the face moves: linear, improved, eased, or spherical with an angle of 2 to 120 degrees; may be given several times
     #[arg(long, value_name = "UNIT=KIND[:DEGREES]")]
     interpolation: Vec<String>,
@@ -138,6 +141,15 @@ pub enum StyleName {
     Lines,
     /// A body with volume
     Solid,
+}
+
+/// Where the face of a clip with a body and a face is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum FaceAt {
+    /// Beside the body
+    Beside,
+    /// On the body's neck: the cartoon face on a head that is the larger the fewer rows the picture has
+    Neck,
 }
 
 /// What the file is, by its extension.
@@ -196,6 +208,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     } else {
         let joints = clip.rig().joint_count() > 0;
         ensure!(joints || arguments.up.is_none(), "{}: --up does not apply to a clip without joints", arguments.input.display());
+        ensure!(
+            arguments.face_at == FaceAt::Beside || arguments.style == StyleName::Solid,
+            "--face-at neck is for --style solid"
+        );
         ensure!(joints || !arguments.fixed, "{}: --fixed does not apply to a clip without joints", arguments.input.display());
         let look = arguments.line_style(kind)?;
         let character = arguments.character()?;
@@ -203,12 +219,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let sides = arguments.sides(face);
         let style = match arguments.style {
             StyleName::Lines => Style::Lines,
-            StyleName::Solid => Style::Solid(character),
+            StyleName::Solid => Style::Solid(character, arguments.face_place()),
         };
         let views = arguments.views(&sides, face);
         let figure = Figure::new(memory.player(clip)?, arguments.size.0, &views, model, (style, look))?;
-        if let (Style::Solid(_), Some(build)) = (style, figure.build()) {
+        if let (Style::Solid(..), Some(build)) = (style, figure.build()) {
             warn_of(build);
+        }
+        let on_neck = arguments.face_at == FaceAt::Neck;
+        ensure!(!on_neck || has_face && joints, "--face-at neck is for clips with a body and a face");
+        if on_neck && !figure.is_face_on_neck() {
+            note!("warning: only a person has a neck: the face is drawn beside the body");
         }
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
         Output { arguments, sides, figure, kind, look, character, frames: clip.frames(), frame_time }.write(&mut file)?;
@@ -253,7 +274,7 @@ pub(super) fn easy_scale(easy: usize, [width, _]: [usize; 2]) -> usize {
 impl Arguments {
     /// The bytes of the face's model.
     fn model(&self) -> Result<Vec<u8>> {
-        let is_cartoon = self.face.as_ref().is_some_and(|name| name.as_os_str() == CARTOON);
+        let is_cartoon = self.face.as_ref().map_or(self.face_at == FaceAt::Neck, |name| name.as_os_str() == CARTOON);
         if let Some(path) = self.face.as_ref().filter(|_| !is_cartoon) {
             let place = || path.display().to_string();
             ensure!(
@@ -273,6 +294,13 @@ impl Arguments {
         };
         blueprint.choose_all(&self.interpolation)?;
         compact::encode(&blueprint)
+    }
+
+    fn face_place(&self) -> FacePlace {
+        match self.face_at {
+            FaceAt::Beside => FacePlace::Beside,
+            FaceAt::Neck => FacePlace::Neck,
+        }
     }
 
     /// The solid figure's character.
@@ -314,6 +342,7 @@ impl Arguments {
             ("--scale", self.scale.is_some()),
             ("--style", self.style != StyleName::Lines),
             ("--look", self.look.is_some()),
+            ("--face-at", self.face_at != FaceAt::Beside),
             ("--palette", PALETTE.parse().is_ok_and(|palette: Palette| self.palette != palette)),
             ("--pixels", self.pixels),
             ("--smooth", self.smooth),
