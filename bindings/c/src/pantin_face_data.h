@@ -4,18 +4,9 @@
 #define PANTIN_FACE_DATA_H
 
 #include "pantin_face.h"
+#include "pantin_flash.h"
 
-#if defined(__AVR__)
-#include <avr/pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#elif defined(ESP8266)
-#include <pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#else
-#define PANTIN_MODEL_FLASH
-#endif
-
-static const uint8_t pantin_cartoon[4060] PANTIN_MODEL_FLASH = {
+static const uint8_t pantin_cartoon[4060] PANTIN_FLASH = {
     1, 0, 249, 7, 0, 45, 0, 5, 0, 45, 0, 0, 0, 0, 0, 30, 1, 0, 9, 2, 41, 0, 0, 51, 241, 51, 51, 0, 0, 123, 234, 205, 48, 0, 0, 82,
     234, 205, 48, 0, 0, 102, 226, 205, 48, 0, 0, 246, 233, 0, 42, 0, 0, 0, 40, 0, 35, 0, 0, 0, 203, 0, 35, 128, 5, 0, 1, 0, 40, 0,
     11, 51, 8, 0, 45, 0, 21, 154, 11, 128, 47, 0, 31, 230, 9, 0, 43, 128, 37, 128, 4, 0, 33, 128, 12, 154, 253, 0, 44, 0, 22, 51,

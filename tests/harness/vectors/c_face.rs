@@ -13,16 +13,7 @@ const START: &str = "/* The cartoon model and the 23 emotes, for pantin_face.h. 
 #define PANTIN_FACE_DATA_H
 
 #include \"pantin_face.h\"
-
-#if defined(__AVR__)
-#include <avr/pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#elif defined(ESP8266)
-#include <pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#else
-#define PANTIN_MODEL_FLASH
-#endif
+#include \"pantin_flash.h\"
 ";
 
 /// The longest line of numbers.
@@ -36,7 +27,7 @@ pub fn path() -> PathBuf {
 /// The file's text.
 pub fn text() -> String {
     let mut text = START.to_owned();
-    array(&mut text, "pantin_cartoon", CARTOON, " PANTIN_MODEL_FLASH");
+    array(&mut text, "pantin_cartoon", CARTOON, " PANTIN_FLASH");
     for (name, clip) in EMOTES {
         array(&mut text, &format!("pantin_emote_{name}"), clip, "");
     }
