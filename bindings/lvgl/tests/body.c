@@ -184,7 +184,10 @@ static uint32_t pixels(lv_display_t *display, const content *of, lv_color_format
     obj = made();
     lv_pantin_set_lines(obj, lines);
     lv_obj_add_event_cb(obj, happened, LV_EVENT_ALL, NULL);
-    NEED(lv_pantin_set_src(obj, of->bytes, of->length) == LV_RESULT_OK);
+    if (lv_pantin_set_src(obj, of->bytes, of->length) != LV_RESULT_OK) {
+        printf("%u bytes are refused\n", (unsigned)of->length);
+        exit(1);
+    }
     reference_open(of);
     for (frame = 0; frame < 300; frame++) {
         if (machine) press(obj, frame);
@@ -204,7 +207,7 @@ static uint32_t pixels(lv_display_t *display, const content *of, lv_color_format
         lv_test_wait(LV_PANTIN_PERIOD);
         reference_step(LV_PANTIN_PERIOD);
         if (!shows_reference(display, format, lines)) {
-            printf("picture %u is not the reference's\n", (unsigned)frame);
+            printf("picture %u of %u bytes is not the reference's\n", (unsigned)frame, (unsigned)of->length);
             exit(1);
         }
     }

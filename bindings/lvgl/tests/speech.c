@@ -33,6 +33,8 @@ int main(int argc, char **argv) {
     if (!pictures) return 2;
     lv_init();
     display = lv_test_display_create(SIZE, SIZE);
+    lv_display_set_color_format(display, LV_COLOR_FORMAT_RGB565);
+    lv_obj_set_style_bg_opa(lv_screen_active(), LV_OPA_COVER, 0);
     face = lv_pantin_create(lv_screen_active());
     if (!face || lv_pantin_set_rate(face, rate) != LV_RESULT_OK) return 3;
     lv_obj_set_size(face, SIZE, SIZE);

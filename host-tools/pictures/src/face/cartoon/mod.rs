@@ -25,6 +25,11 @@ pub const EYES: &str = include_str!("../eyes.txt");
 /// A face of few strokes.
 pub const MINIMAL: &str = include_str!("../minimal.txt");
 
+/// The text of one of Pantin's own faces by its name.
+pub fn named(name: &str) -> Option<&'static str> {
+    [("cartoon", TABLE), ("eyes", EYES), ("minimal", MINIMAL)].into_iter().find(|own| own.0 == name).map(|own| own.1)
+}
+
 /// How far before the head the points are that belong to no part of it, in mm.
 const FRONT: f64 = 70.0;
 
@@ -42,7 +47,7 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let renumbered = table.curves.iter().map(|curve| Curve { points: kept.all_renumbered(&curve.points), ..curve.clone() });
     let own = blocks::curves(&table, &kept, &places.blocks);
     let curves = renumbered.chain(own).chain(props::curves(&table.hidden, &places.hidden)).collect();
-    let mut shapes = units::shapes(face, &kept, &enlarged, table.jaw);
+    let mut shapes = units::shapes(face, &kept, &enlarged, &table);
     blocks::add(&table, face, &kept, &places.blocks, &mut shapes)?;
     let mut names = face.names.clone();
     props::add(&table, &places.hidden, &mut shapes, &mut names);

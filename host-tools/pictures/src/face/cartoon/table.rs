@@ -39,7 +39,7 @@ pub(super) struct Move {
     pub ways: Vec<[f64; 2]>,
 }
 
-/// A unit that moves the corners of a hidden shape to places on the left. Several may open one shape.
+/// A unit that moves the corners of a hidden shape to places on the left: one of its own, or one of the face. Several may open one shape.
 pub(super) struct Prop {
     /// The unit's name.
     pub name: String,
@@ -60,6 +60,8 @@ pub(super) struct Table {
     pub jaw: f64,
     /// The enlarged parts, each once.
     pub zooms: Vec<Zoom>,
+    /// Units of the face, as indices of its shapes, that move points of the head farther or less far, and by what factor.
+    pub gains: Vec<(usize, f64)>,
     /// Areas and lines, through points of the head.
     pub curves: Vec<Curve>,
     /// Shapes with corners of their own, and how units move these.
@@ -68,7 +70,7 @@ pub(super) struct Table {
     pub moves: Vec<Move>,
     /// The hidden shapes, each opened by a prop.
     pub hidden: Vec<Hidden>,
-    /// The units that open hidden shapes.
+    /// What opens hidden shapes.
     pub props: Vec<Prop>,
 }
 
@@ -89,6 +91,7 @@ impl Table {
             [] => Ok(()),
             ["view", width, top, bottom] => self.view([width, top, bottom]),
             ["jaw", part] => self.jaw(part),
+            ["gain", name, factor] => self.gain(name, factor, face),
             ["zoom", name, factor, aside, up] => self.zoom(name, [factor, aside, up]),
             ["block", shade, options, ref places @ ..] => self.block(shade, options, places),
             ["move", name, number, ref ways @ ..] => self.moved(name, number, ways, face),
@@ -96,7 +99,7 @@ impl Table {
             ["prop", name, number, ref places @ ..] => self.prop(name, number, places, face),
             ["fill", shade, options, ref points @ ..] => self.curve(true, shade, options, points, head),
             ["line", shade, options, ref points @ ..] => self.curve(false, shade, options, points, head),
-            _ => bail!("expected view, jaw, zoom, fill, line, block, move, hidden or prop"),
+            _ => bail!("expected view, jaw, zoom, gain, fill, line, block, move, hidden or prop"),
         }
     }
 
@@ -127,6 +130,15 @@ impl Table {
         Ok(())
     }
 
+    fn gain(&mut self, name: &str, factor: &str, face: &Blueprint) -> Result<()> {
+        let unit = unit(name, face)?;
+        ensure!(self.gains.iter().all(|gain| gain.0 != unit), "a second gain {name}");
+        let [factor] = numbers([factor])?;
+        ensure!((0.0..=3.0).contains(&factor), "expected a factor from 0 to 3");
+        self.gains.push((unit, factor));
+        Ok(())
+    }
+
     fn block(&mut self, shade: &str, options: &str, places: &[&str]) -> Result<()> {
         let (options, straight) = options.strip_suffix(",straight").map_or((options, false), |options| (options, true));
         let paired = is_paired(options)?;
@@ -146,8 +158,7 @@ impl Table {
         let block = block.with_context(|| format!("no block {number} before it"))?;
         let corners = self.blocks[block].places.len();
         ensure!(ways.len() == corners, "block {number} has {corners} corners, not {}", ways.len());
-        let unit = face.shapes.iter().position(|shape| shape.name == name && shape.kind != ShapeKind::Head);
-        let unit = unit.with_context(|| format!("the face has no unit {name} that moves points"))?;
+        let unit = unit(name, face)?;
         ensure!(self.moves.iter().all(|other| (other.unit, other.block) != (unit, block)), "{name} moves block {number} already");
         let ways = ways.iter().map(|word| if *word == "." { Ok([0.0; 2]) } else { pair(word) }).collect::<Result<_>>()?;
         self.moves.push(Move { unit, block, ways });
@@ -166,7 +177,8 @@ impl Table {
         let shape = number.checked_sub(1).and_then(|index| self.hidden.get(index));
         let corners = shape.with_context(|| format!("no hidden shape {number} before it"))?.corners;
         ensure!(places.len() == corners, "hidden shape {number} has {corners} corners, not {}", places.len());
-        ensure!(face.names.iter().all(|drive| drive.name != name), "the face has a unit {name} already");
+        let is_unit = face.shapes.iter().any(|shape| shape.name == name && !shape.deltas.is_empty());
+        ensure!(is_unit || face.names.iter().all(|drive| drive.name != name), "{name} is a name of the face, but no unit that moves points");
         let places = places.iter().map(|word| pair(word)).collect::<Result<_>>()?;
         self.props.push(Prop { name: name.into(), hidden: number - 1, places });
         Ok(())
@@ -192,6 +204,12 @@ impl Table {
         ensure!(unopened.is_none(), "no prop opens hidden shape {}", unopened.unwrap_or_default() + 1);
         Ok(self)
     }
+}
+
+/// The index of a unit that moves points.
+fn unit(name: &str, face: &Blueprint) -> Result<usize> {
+    let unit = face.shapes.iter().position(|shape| shape.name == name && shape.kind != ShapeKind::Head);
+    unit.with_context(|| format!("the face has no unit {name} that moves points"))
 }
 
 fn is_paired(options: &str) -> Result<bool> {
