@@ -15,7 +15,9 @@
 #define LV_USE_IMAGE 1
 #define LV_USE_LABEL 1
 #define LV_USE_GIF 1
+#ifndef LV_PANTIN_BODY
 #define LV_PANTIN_BODY 1
+#endif
 #define LV_BUILD_EXAMPLES 0
 #define LV_BUILD_DEMOS 0
 

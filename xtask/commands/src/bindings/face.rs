@@ -64,7 +64,11 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
             same("damaged models", &rust, &run(&["mutants"], &[path], &[MUTANTS.to_string()])?)?;
         }
     }
-    println!("   {} frames, {} damaged models", expected.lines().filter(|line| line.len() == 8).count(), MODELS.len() as u32 * MUTANTS);
+    println!(
+        "   {} frames, {} damaged models",
+        expected.lines().filter(|line| line.len() == 8).count(),
+        MODELS.len() as u32 * MUTANTS
+    );
     Ok(())
 }
 

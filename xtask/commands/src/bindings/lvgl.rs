@@ -36,11 +36,7 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let convert = |motions: &[&str], name: &str| -> Result<PathBuf> {
         let made = folder.path().join(name);
         let mut tool = Command::new(build::host_tool()?);
-        tool.current_dir(paths::root().join("motions"))
-            .arg("convert")
-            .args(motions)
-            .args(["--segments", "--same-form", "-o"])
-            .arg(&made);
+        tool.current_dir(paths::root().join("motions")).arg("convert").args(motions).args(["--segments", "-o"]).arg(&made);
         output(tool)?;
         Ok(made)
     };

@@ -178,7 +178,10 @@ impl Table {
         let corners = shape.with_context(|| format!("no hidden shape {number} before it"))?.corners;
         ensure!(places.len() == corners, "hidden shape {number} has {corners} corners, not {}", places.len());
         let is_unit = face.shapes.iter().any(|shape| shape.name == name && !shape.deltas.is_empty());
-        ensure!(is_unit || face.names.iter().all(|drive| drive.name != name), "{name} is a name of the face, but no unit that moves points");
+        ensure!(
+            is_unit || face.names.iter().all(|drive| drive.name != name),
+            "{name} is a name of the face, but no unit that moves points"
+        );
         let places = places.iter().map(|word| pair(word)).collect::<Result<_>>()?;
         self.props.push(Prop { name: name.into(), hidden: number - 1, places });
         Ok(())

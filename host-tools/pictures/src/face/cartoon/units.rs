@@ -12,7 +12,9 @@ pub(super) fn shapes(face: &Blueprint, kept: &Kept, enlarged: &Enlarged, table: 
     let shape = |(unit, shape): (usize, &Shape)| {
         let gain = table.gains.iter().find(|gain| gain.0 == unit).map_or(1.0, |gain| gain.1);
         let deltas = shape.deltas.iter().filter(|entry| kept.has(entry.0));
-        let moved = |&(index, way): &(usize, Vector)| (kept.renumbered(index), way.map(|x| x * gain * enlarged.factor_and_offset(index).0));
+        let moved = |&(index, way): &(usize, Vector)| {
+            (kept.renumbered(index), way.map(|x| x * gain * enlarged.factor_and_offset(index).0))
+        };
         let deltas = deltas.map(moved).collect();
         let turns = shape.turns.iter().map(|turn| rotation(turn, kept, enlarged, table.jaw));
         let turns = turns.filter(|turn| !turn.members.is_empty() || shape.kind == ShapeKind::Head).collect();
