@@ -64,9 +64,12 @@ fn no_vector_has_changed() {
 
 #[test]
 fn the_tables_in_c_are_those_of_the_crates() {
-    for (path, text) in
-        [(c_header::path(), c_header::text()), (c_figure::path(), c_figure::text()), (c_face::path(), c_face::text())]
-    {
+    for (path, text) in [
+        (c_header::path(), c_header::text()),
+        (c_figure::path(), c_figure::text()),
+        (c_face::path(), c_face::text()),
+        (c_face::themes_path(), c_face::themes_text()),
+    ] {
         if std::env::var_os("PANTIN_UPDATE").is_some() {
             fs::write(&path, &text).unwrap();
         }

@@ -16,7 +16,7 @@
 class PantinContent {
   public:
     pantin_source *open(const uint8_t *bytes, uint32_t length) {
-#ifdef __AVR__
+#if defined(__AVR__) || defined(ESP8266)
         pantin_paged(&pages, length, pantin_read_progmem, const_cast<uint8_t *>(bytes), page, sizeof page);
 #else
         pantin_memory(&pages.source, bytes, length);
@@ -26,7 +26,7 @@ class PantinContent {
 
   private:
     pantin_pages pages;
-#ifdef __AVR__
+#if defined(__AVR__) || defined(ESP8266)
     uint8_t page[64];
 #endif
 };

@@ -76,9 +76,9 @@ void pantin_paged(pantin_pages *pages, uint32_t length, pantin_read read, void *
     pages->page_size = page_size;
 }
 
-#ifdef __AVR__
+#if defined(__AVR__) || defined(ESP8266)
 int pantin_read_progmem(void *context, uint32_t position, uint8_t *into, uint16_t count) {
-    memcpy_P(into, (const uint8_t *)context + (uint16_t)position, count);
+    memcpy_P(into, (const uint8_t *)context + (uintptr_t)position, count);
     return 0;
 }
 #endif

@@ -85,7 +85,7 @@ struct pantin_source {
     pantin_result failed;   /* the first result of `load` that was not PANTIN_OK since somebody cleared this */
 };
 
-/* A source whose `length` bytes are all in memory (on AVR: in RAM). */
+/* A source whose `length` bytes are all in memory (on AVR and ESP8266: in RAM). */
 void pantin_memory(pantin_source *source, const uint8_t *bytes, uint32_t length);
 
 /* Reads `count` bytes from `position` of a file into `into`. Returns 0 if it succeeded. `count` is at least 1, and all bytes are within the
@@ -104,7 +104,7 @@ typedef struct pantin_pages {
 /* A source of `length` bytes that `read` supplies. `page` lends `page_size` bytes, at least 1; 128 suit well. */
 void pantin_paged(pantin_pages *pages, uint32_t length, pantin_read read, void *context, uint8_t *page, uint16_t page_size);
 
-#ifdef __AVR__
+#if defined(__AVR__) || defined(ESP8266)
 /* A `pantin_read` for program memory: `context` is the address of the first byte there (an array declared with PROGMEM). */
 int pantin_read_progmem(void *context, uint32_t position, uint8_t *into, uint16_t count);
 #endif

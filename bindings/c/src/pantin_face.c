@@ -5,14 +5,8 @@
 #include "pantin_face.h"
 #include "pantin_figure_tables.h"
 
-#if defined(ESP8266)
-#include <pgmspace.h>
-#endif
-#if defined(__AVR__) || defined(ESP8266)
-#define BYTE(address) pgm_read_byte(address)
-#else
-#define BYTE(address) (*(address))
-#endif
+/* A byte of a model. */
+#define BYTE(address) PANTIN_U8(address)
 
 typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 

@@ -227,7 +227,7 @@ int pantin_figure_aim_along(int32_t *v, int32_t *length) {
 
 int32_t pantin_figure_angle(int32_t y, int32_t x) {
     int32_t across = (int32_t)size_of(y), along = (int32_t)size_of(x), small = least(across, along), large = most(across, along), angle;
-    uint8_t index = (uint8_t)(small >> 8 < 93 ? pantin_nearest[small >> 8] : 16);
+    uint8_t index = (uint8_t)(small >> 8 < 93 ? PANTIN_U8(pantin_nearest + (small >> 8)) : 16);
     angle = ((small * (PANTIN_I32(pantin_circle + 2 * index + 1) >> 7) - large * (PANTIN_I32(pantin_circle + 2 * index) >> 7) + HALF) >> FRACTION) * 20861;
     angle += (int32_t)index << 25;
     if (across > along) angle = (int32_t)0x40000000 - angle;

@@ -2,17 +2,7 @@
 #ifndef PANTIN_FIGURE_TABLES_H
 #define PANTIN_FIGURE_TABLES_H
 
-/* On AVR the tables stay in flash, which needs other instructions than RAM. */
-#ifdef __AVR__
-#include <avr/pgmspace.h>
-#define PANTIN_FLASH PROGMEM
-#define PANTIN_U16(address) pgm_read_word(address)
-#define PANTIN_I32(address) ((int32_t)pgm_read_dword(address))
-#else
-#define PANTIN_FLASH
-#define PANTIN_U16(address) (*(address))
-#define PANTIN_I32(address) (*(address))
-#endif
+#include "pantin_flash.h"
 
 static const int32_t pantin_circle[64] PANTIN_FLASH = {
     0, 4194304, 205805, 4189252, 411114, 4174107, 615432, 4148907, 818268, 4113712, 1019133, 4068606, 1217542, 4013699, 1413018,

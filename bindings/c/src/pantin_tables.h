@@ -2,19 +2,7 @@
 #ifndef PANTIN_TABLES_H
 #define PANTIN_TABLES_H
 
-/* On AVR the tables stay in flash, which needs other instructions than RAM. */
-#ifdef __AVR__
-#include <avr/pgmspace.h>
-#define PANTIN_FLASH PROGMEM
-#define PANTIN_U8(address) pgm_read_byte(address)
-#define PANTIN_U16(address) pgm_read_word(address)
-#define PANTIN_U32(address) pgm_read_dword(address)
-#else
-#define PANTIN_FLASH
-#define PANTIN_U8(address) ((uint8_t)*(address))
-#define PANTIN_U16(address) (*(address))
-#define PANTIN_U32(address) (*(address))
-#endif
+#include "pantin_flash.h"
 
 #define PANTIN_MAGIC_0 80
 #define PANTIN_MAGIC_1 110

@@ -1,9 +1,12 @@
 """Plays speech of espeak-ng to pantin_talk and prints how well the mouth follows it, against the phonemes' own times.
 
     talk_speech.py TALK.so
+    talk_speech.py --say TEXT SOUND.pcm
 
-Fails below what the README promises. Without espeak-ng's library it says so.
+Fails below what the README promises. Without espeak-ng's library it says so. The second form writes the sound of a text, and prints its rate and when each
+phoneme begins and ends, in milliseconds.
 """
+import array
 import ctypes
 import sys
 
@@ -110,7 +113,33 @@ def loudness(samples, rate, begin, end):
     return (sum(x * x for x in part) / len(part)) ** 0.5 if part else 0.0
 
 
+def is_gap(samples, rate, begin, end):
+    """Whether the lips can be heard to close: the sound is at most a quarter as loud as what is beside it."""
+    gap = min(loudness(samples, rate, at, at + 15) for at in range(begin, max(end - 10, begin + 1), 5))
+    near = max(loudness(samples, rate, begin - 60, begin - 20), loudness(samples, rate, end + 10, end + 50))
+    return gap < near / 4
+
+
+def say(text, path):
+    try:
+        speaker = Speaker()
+    except OSError as error:
+        print(f"espeak-ng's library is not here ({error})")
+        return
+    samples, phonemes = speaker.say("en", text)
+    with open(path, "wb") as file:
+        file.write(array.array("h", samples).tobytes())
+    print(speaker.rate)
+    ends = [ms for ms, _ in phonemes[1:]] + [len(samples) * 1000 // speaker.rate]
+    for (begin, phoneme), end in zip(phonemes, ends):
+        closed = phoneme in LIPS and is_gap(samples, speaker.rate, begin, end)
+        kind = "closed" if closed else "open" if phoneme in OPEN and end - begin >= 50 else "other"
+        print(begin, end, kind, phoneme)
+
+
 def main():
+    if sys.argv[1] == "--say":
+        return say(sys.argv[2], sys.argv[3])
     talk = ctypes.CDLL(sys.argv[1])
     try:
         speaker = Speaker()
@@ -138,12 +167,7 @@ def main():
                     half = next(index for index, value in enumerate(jaws) if value >= max(jaws) / 2)
                     late.append((first + half + 1) * 10 - begin)
                 if phoneme in LIPS:
-                    gap = min(loudness(samples, speaker.rate, at, at + 15) for at in range(begin, max(end - 10, begin + 1), 5))
-                    near = max(
-                        loudness(samples, speaker.rate, begin - 60, begin - 20),
-                        loudness(samples, speaker.rate, end + 10, end + 50),
-                    )
-                    if gap < near / 4:
+                    if is_gap(samples, speaker.rate, begin, end):
                         gaps += 1
                         closed += min(jaw(hop) for hop in hops[first : last + 1]) <= 0.1
     late.sort()

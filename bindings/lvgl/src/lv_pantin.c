@@ -1,8 +1,9 @@
-/* A face for LVGL 9: see lv_pantin.h. */
+/* Faces and bodies for LVGL 9: see lv_pantin.h. */
 #include "lv_pantin.h"
 
 #include <string.h>
 
+#include "lv_pantin_body.h"
 #include "pantin_face_data.h"
 /* A class that extends another needs the size of its structure. */
 #include "src/core/lv_obj_class_private.h"
@@ -13,7 +14,11 @@ typedef struct {
     lv_canvas_t canvas;
     pantin_face face;
     pantin_talk talk;
-    uint32_t *memory;       /* lent to the face */
+    uint32_t *memory;       /* lent to the face; NULL while a body is shown */
+#if LV_PANTIN_BODY
+    lv_pantin_body_t *body;
+    lv_pantin_settings settings;
+#endif
     lv_draw_buf_t *picture;
     lv_draw_buf_t *rows;    /* LV_PANTIN_ROWS rows, as they are now */
     lv_timer_t *timer;
@@ -62,6 +67,30 @@ static void release(lv_pantin_t *p) {
     p->picture = p->rows = NULL;
 }
 
+#if LV_PANTIN_BODY
+static bool shows(const lv_pantin_t *p) { return p->memory || p->body; }
+
+static pantin_result set_size(lv_pantin_t *p, uint16_t width, uint16_t height) {
+    if (!p->body) return pantin_face_size(&p->face, width, height);
+    return lv_pantin_body_has_size(p->body, width, height) ? PANTIN_OK : lv_pantin_body_size(p->body, &p->settings, width, height);
+}
+
+static pantin_result draw_rows(lv_pantin_t *p, uint16_t y0, uint16_t y1) {
+    const lv_draw_buf_t *rows = p->rows;
+    if (p->body && y0 == 0) lv_pantin_body_pose(p->body, &p->settings);
+    return p->body ? lv_pantin_body_draw(p->body, &p->settings, format_of(rows), rows->data, rows->header.stride, y0, y1)
+                   : pantin_face_draw(&p->face, format_of(rows), rows->data, rows->header.stride, y0, y1);
+}
+#else
+static bool shows(const lv_pantin_t *p) { return p->memory != NULL; }
+
+static pantin_result set_size(lv_pantin_t *p, uint16_t width, uint16_t height) { return pantin_face_size(&p->face, width, height); }
+
+static pantin_result draw_rows(lv_pantin_t *p, uint16_t y0, uint16_t y1) {
+    return pantin_face_draw(&p->face, format_of(p->rows), p->rows->data, p->rows->header.stride, y0, y1);
+}
+#endif
+
 /* Draws the picture into `rows`, a part at a time, and copies what differs. */
 static void draw(lv_pantin_t *p) {
     lv_obj_t *obj = (lv_obj_t *)p;
@@ -72,7 +101,7 @@ static void draw(lv_pantin_t *p) {
     uint32_t first = length, last = 0, top = height, bottom = 0, y, row;
     for (y = 0; y < height; y += LV_PANTIN_ROWS) {
         uint32_t end = LV_MIN(y + LV_PANTIN_ROWS, height);
-        if (pantin_face_draw(&p->face, format_of(p->picture), p->rows->data, stride, (uint16_t)y, (uint16_t)end) != PANTIN_OK) return;
+        if (draw_rows(p, (uint16_t)y, (uint16_t)end) != PANTIN_OK) return;
         for (row = y; row < end; row++) {
             const uint8_t *now = p->rows->data + (row - y) * stride;
             uint8_t *before = p->picture->data + row * stride;
@@ -104,12 +133,13 @@ static void resize(lv_pantin_t *p) {
     int32_t width = lv_obj_get_content_width(obj), height = lv_obj_get_content_height(obj);
     lv_color_format_t display = lv_display_get_color_format(lv_obj_get_display(obj));
     lv_color_format_t format = display == LV_COLOR_FORMAT_L8 || display == LV_COLOR_FORMAT_I1 ? LV_COLOR_FORMAT_L8 : LV_COLOR_FORMAT_RGB565;
-    if (width < 1 || height < 1 || !p->memory) return;
+    if (width < 1 || height < 1 || !shows(p)) return;
     if (p->picture && p->picture->header.w == width && p->picture->header.h == height && p->picture->header.cf == format) return;
     release(p);
-    if (pantin_face_size(&p->face, (uint16_t)LV_MIN(width, 2047), (uint16_t)LV_MIN(height, 2047)) != PANTIN_OK) return;
-    p->picture = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), (uint32_t)LV_MIN(height, 2047), format, LV_STRIDE_AUTO);
-    p->rows = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), LV_PANTIN_ROWS, format, LV_STRIDE_AUTO);
+    if (set_size(p, (uint16_t)LV_MIN(width, 2047), (uint16_t)LV_MIN(height, 2047)) == PANTIN_OK) {
+        p->picture = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), (uint32_t)LV_MIN(height, 2047), format, LV_STRIDE_AUTO);
+        p->rows = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), LV_PANTIN_ROWS, format, LV_STRIDE_AUTO);
+    }
     if (!p->picture || !p->rows) {
         LV_LOG_ERROR("lv_pantin: no memory for a picture of %d by %d", (int)width, (int)height);
         release(p);
@@ -141,6 +171,10 @@ static uint32_t *open_model(pantin_face *face, const uint8_t *model, uint32_t le
 static void constructor(const lv_obj_class_t *class_p, lv_obj_t *obj) {
     lv_pantin_t *p = (lv_pantin_t *)obj;
     LV_UNUSED(class_p);
+#if LV_PANTIN_BODY
+    p->settings.view = pantin_default_view;
+    p->settings.floor = 1;
+#endif
     p->memory = open_model(&p->face, pantin_cartoon, sizeof pantin_cartoon);
     p->shown = lv_tick_get();
     p->timer = lv_timer_create(pass, LV_PANTIN_PERIOD, obj);
@@ -158,6 +192,9 @@ static void destructor(const lv_obj_class_t *class_p, lv_obj_t *obj) {
     release(p);
     p->canvas.draw_buf = NULL;
     lv_free(p->memory);
+#if LV_PANTIN_BODY
+    lv_pantin_body_close(p->body);
+#endif
 }
 
 static void event(const lv_obj_class_t *class_p, lv_event_t *e) {
@@ -168,35 +205,95 @@ static void event(const lv_obj_class_t *class_p, lv_event_t *e) {
     }
 }
 
-/* The next picture. Time passes while the object is not seen, but nothing is drawn. */
-static void pass(lv_timer_t *timer) {
-    lv_obj_t *obj = (lv_obj_t *)lv_timer_get_user_data(timer);
-    lv_pantin_t *p = (lv_pantin_t *)obj;
-    uint32_t elapsed = lv_tick_elaps(p->shown);
-    uint16_t ms = (uint16_t)LV_MIN(elapsed, 65535u);
+/* Lets time pass for lips and face. */
+static void step_face(lv_pantin_t *p, uint16_t ms) {
     uint8_t viseme;
-    p->shown += elapsed;
     pantin_talk_step(&p->talk, ms);
     for (viseme = 1; viseme <= PANTIN_TALK_VISEMES; viseme++) {
         pantin_face_viseme(&p->face, viseme, p->talk.weights[viseme - 1]);
     }
     pantin_face_step(&p->face, ms);
-    if (p->picture && lv_obj_is_visible(obj)) draw(p);
 }
 
-lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *model, uint32_t length) {
-    lv_pantin_t *p = (lv_pantin_t *)obj;
-    pantin_face face;
-    uint32_t *memory = open_model(&face, model, length);
-    if (!memory) {
-        LV_LOG_WARN("lv_pantin: the model is damaged, or there is no memory for it");
-        return LV_RESULT_INVALID;
+#if LV_PANTIN_BODY
+/* Lets time pass for what is shown. False if an event that this sends deleted the object. */
+static bool step(lv_pantin_t *p, uint16_t ms) {
+    lv_obj_t *obj = (lv_obj_t *)p;
+    bool entered, ended;
+    if (!p->body) {
+        step_face(p, ms);
+        return true;
     }
-    pantin_face_emotes(&face, p->face.emotes, p->face.emote_count);
-    pantin_face_live(&face, (uint32_t)(uintptr_t)obj | 1);
+    lv_pantin_body_step(p->body, ms);
+    entered = p->body->entered;
+    ended = p->body->ended;
+    if (entered && lv_obj_send_event(obj, LV_EVENT_VALUE_CHANGED, NULL) == LV_RESULT_INVALID) return false;
+    return !ended || lv_obj_send_event(obj, LV_EVENT_READY, NULL) != LV_RESULT_INVALID;
+}
+#else
+static bool step(lv_pantin_t *p, uint16_t ms) {
+    step_face(p, ms);
+    return true;
+}
+#endif
+
+/* The next picture. Time passes while the object is not seen, but nothing is drawn. */
+static void pass(lv_timer_t *timer) {
+    lv_obj_t *obj = (lv_obj_t *)lv_timer_get_user_data(timer);
+    lv_pantin_t *p = (lv_pantin_t *)obj;
+    uint32_t elapsed = lv_tick_elaps(p->shown);
+    p->shown += elapsed;
+    if (step(p, (uint16_t)LV_MIN(elapsed, 65535u)) && p->picture && lv_obj_is_visible(obj)) draw(p);
+}
+
+/* Shows the face that was opened, with the emotes of the face before. */
+static void set_face(lv_pantin_t *p, pantin_face *face, uint32_t *memory) {
+    const pantin_emote *emotes = p->face.emotes;
+    pantin_face_emotes(face, emotes ? emotes : pantin_emotes, emotes ? p->face.emote_count : PANTIN_EMOTES);
+    pantin_face_live(face, (uint32_t)(uintptr_t)p | 1);
     lv_free(p->memory);
     p->memory = memory;
-    p->face = face;
+    p->face = *face;
+}
+
+#if LV_PANTIN_BODY
+/* Sets the figure of a body up for the size of the widget. */
+static bool set_up(lv_pantin_t *p, lv_pantin_body_t *body) {
+    int32_t width = lv_obj_get_content_width((lv_obj_t *)p), height = lv_obj_get_content_height((lv_obj_t *)p);
+    return lv_pantin_body_size(body, &p->settings, (uint16_t)LV_CLAMP(1, width, 2047), (uint16_t)LV_CLAMP(1, height, 2047)) == PANTIN_OK;
+}
+#endif
+
+lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *bytes, uint32_t length) {
+    lv_pantin_t *p = (lv_pantin_t *)obj;
+    pantin_face face;
+    uint32_t *memory = open_model(&face, bytes, length);
+#if LV_PANTIN_BODY
+    lv_pantin_body_t *body = memory ? NULL : lv_pantin_body_open(bytes, length);
+    if (body && !set_up(p, body)) {
+        lv_pantin_body_close(body);
+        body = NULL;
+    }
+    if (body) {
+        lv_free(p->memory);
+        p->memory = NULL;
+        lv_memzero(&p->face, sizeof p->face);
+    }
+    if (memory || body) {
+        lv_pantin_body_close(p->body);
+        p->body = body;
+    }
+    if (body) {
+        release(p);
+        resize(p);
+        return LV_RESULT_OK;
+    }
+#endif
+    if (!memory) {
+        LV_LOG_WARN("lv_pantin: this is damaged or nothing that the widget shows, or there is no memory for it");
+        return LV_RESULT_INVALID;
+    }
+    set_face(p, &face, memory);
     release(p);
     resize(p);
     return LV_RESULT_OK;
@@ -211,6 +308,10 @@ lv_result_t lv_pantin_set_emote(lv_obj_t *obj, const char *name) {
     pantin_result result = pantin_face_emote(face, name);
     uint16_t i;
     if (result == PANTIN_OK) return LV_RESULT_OK;
+    if (result == PANTIN_ERROR_HEAD) {
+        LV_LOG_WARN("lv_pantin: a body has no emotes");
+        return LV_RESULT_INVALID;
+    }
     if (result != PANTIN_NOT_FOUND) {
         LV_LOG_WARN("lv_pantin: the emote %s is damaged, or has more than LV_PANTIN_CHANNELS channels", name);
         return LV_RESULT_INVALID;
@@ -237,9 +338,92 @@ void lv_pantin_push_pcm(lv_obj_t *obj, const int16_t *samples, size_t count) {
 
 lv_result_t lv_pantin_set_viseme(lv_obj_t *obj, uint8_t viseme, uint32_t ms) {
     pantin_talk *talk = &((lv_pantin_t *)obj)->talk;
+    if (!((lv_pantin_t *)obj)->memory) return LV_RESULT_INVALID;
     return pantin_talk_viseme(talk, viseme, talk->now + ms) == PANTIN_OK ? LV_RESULT_OK : LV_RESULT_INVALID;
 }
 
 pantin_face *lv_pantin_get_face(lv_obj_t *obj) { return &((lv_pantin_t *)obj)->face; }
 
 pantin_talk *lv_pantin_get_talk(lv_obj_t *obj) { return &((lv_pantin_t *)obj)->talk; }
+
+/* ---- Bodies ---- */
+
+#if LV_PANTIN_BODY
+
+/* What a machine's index of a name is for a body that has one; a warning otherwise. */
+static pantin_character *machine_with(lv_obj_t *obj, const char *name, uint8_t (*find)(const pantin_character *, const char *), uint8_t *index) {
+    lv_pantin_body_t *body = ((lv_pantin_t *)obj)->body;
+    *index = body && body->machine ? find(&body->character, name) : PANTIN_NO_INPUT;
+    if (*index != PANTIN_NO_INPUT) return &body->character;
+    LV_LOG_WARN("lv_pantin: the state machine has no %s, or there is none", name ? name : "NULL");
+    return NULL;
+}
+
+lv_result_t lv_pantin_fire(lv_obj_t *obj, const char *input) {
+    uint8_t index;
+    pantin_character *character = machine_with(obj, input, pantin_character_input, &index);
+    if (character) pantin_character_fire(character, index);
+    return character ? LV_RESULT_OK : LV_RESULT_INVALID;
+}
+
+lv_result_t lv_pantin_hold(lv_obj_t *obj, const char *input, bool down) {
+    uint8_t index;
+    pantin_character *character = machine_with(obj, input, pantin_character_input, &index);
+    if (character) pantin_character_hold(character, index, down);
+    return character ? LV_RESULT_OK : LV_RESULT_INVALID;
+}
+
+lv_result_t lv_pantin_set_parameter(lv_obj_t *obj, const char *parameter, int16_t value) {
+    uint8_t index;
+    pantin_character *character = machine_with(obj, parameter, pantin_character_parameter, &index);
+    if (character) pantin_character_set(character, index, value);
+    return character ? LV_RESULT_OK : LV_RESULT_INVALID;
+}
+
+lv_result_t lv_pantin_play(lv_obj_t *obj, const char *clip) {
+    lv_pantin_t *p = (lv_pantin_t *)obj;
+    if (p->body && lv_pantin_body_play(p->body, &p->settings, clip) == PANTIN_OK) return LV_RESULT_OK;
+    LV_LOG_WARN("lv_pantin: there is no clip %s to play, or a state machine plays", clip ? clip : "NULL");
+    return LV_RESULT_INVALID;
+}
+
+void lv_pantin_set_lines(lv_obj_t *obj, bool lines) { ((lv_pantin_t *)obj)->settings.lines = lines; }
+
+void lv_pantin_set_floor(lv_obj_t *obj, bool floor) { ((lv_pantin_t *)obj)->settings.floor = floor; }
+
+/* Sets the camera up again with other settings, or keeps those of before. */
+static lv_result_t change(lv_pantin_t *p, const lv_pantin_settings *settings) {
+    lv_pantin_settings before = p->settings;
+    p->settings = *settings;
+    if (!p->body || set_up(p, p->body)) return LV_RESULT_OK;
+    p->settings = before;
+    return LV_RESULT_INVALID;
+}
+
+lv_result_t lv_pantin_set_view(lv_obj_t *obj, int16_t orbit, int16_t tilt, bool fixed) {
+    lv_pantin_settings settings = ((lv_pantin_t *)obj)->settings;
+    settings.view.orbit = orbit;
+    settings.view.tilt = tilt;
+    settings.view.fixed = fixed;
+    return change((lv_pantin_t *)obj, &settings);
+}
+
+lv_result_t lv_pantin_set_look(lv_obj_t *obj, const uint8_t *look, uint32_t length) {
+    lv_pantin_settings settings = ((lv_pantin_t *)obj)->settings;
+    pantin_solid solid;
+    lv_memzero(&solid, sizeof solid);
+    if (pantin_solid_look(&solid, look, length) != PANTIN_OK) {
+        LV_LOG_WARN("lv_pantin: these bytes are no character");
+        return LV_RESULT_INVALID;
+    }
+    settings.look = look;
+    settings.look_length = length;
+    return change((lv_pantin_t *)obj, &settings);
+}
+
+pantin_character *lv_pantin_get_character(lv_obj_t *obj) {
+    lv_pantin_body_t *body = ((lv_pantin_t *)obj)->body;
+    return body ? &body->character : NULL;
+}
+
+#endif

@@ -19,6 +19,9 @@
 #define LV_USE_GIF 1
 #define LV_USE_TEST 1
 #define LV_USE_TEST_SCREENSHOT_COMPARE 0
+#ifndef LV_PANTIN_WITHOUT_BODY
+#define LV_PANTIN_BODY 1
+#endif
 #define LV_BUILD_EXAMPLES 0
 #define LV_BUILD_DEMOS 0
 

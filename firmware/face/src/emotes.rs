@@ -1,7 +1,7 @@
 //! The emotes of voice-assistant devices, as clips.
 
 /// The 23 emotes that voice-assistant devices name, each a clip (`.ptn`) that loops in 1.2 to 2 s and drives [`MODEL`](crate::MODEL) and
-/// [`CARTOON`](crate::CARTOON): the motions in `motions/emotes`, in the order of their names. They take 1,913 bytes together.
+/// [`CARTOON`](crate::CARTOON): the motions in `motions/emotes`, in the order of their names. They take 1,932 bytes together.
 ///
 /// ```
 /// let (_, happy) = pantin_face::EMOTES.iter().find(|(name, _)| *name == "happy").ok_or("no such emote")?;

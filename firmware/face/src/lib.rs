@@ -97,6 +97,13 @@ pub const SMALL_HEIGHT: u16 = 102;
 /// `sound`. `pantin face model --cartoon` writes it.
 pub static CARTOON: &[u8] = include_bytes!("../cartoon.model");
 
+/// A face of two eyes alone, as robots have them: rectangles that blink, look, squint and bend, with the props of [`CARTOON`]. `pantin face model --cartoon
+/// eyes` writes it.
+pub static EYES: &[u8] = include_bytes!("../eyes.model");
+
+/// A face of few strokes: dots for eyes, brows, and a line for the mouth, with the props of [`CARTOON`]. `pantin face model --cartoon minimal` writes it.
+pub static MINIMAL: &[u8] = include_bytes!("../minimal.model");
+
 /// The names that drive Pantin's own face, one per line: its units, sums of units such as `joy` and `viseme_aa`, the blend shapes of ARKit and
 /// the facial animation parameters of MPEG-4. docs/FACE.md explains them.
 ///

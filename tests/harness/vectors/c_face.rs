@@ -1,9 +1,10 @@
-//! `pantin_face_data.h`: the cartoon model and the emotes of the crate pantin-face, for the face in C.
+//! `pantin_face_data.h` and `pantin_face_themes.h`: the cartoon model and the emotes of the crate pantin-face, and its other faces of filled shapes, for the
+//! face in C.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use pantin_face::{CARTOON, EMOTES};
+use pantin_face::{CARTOON, EMOTES, EYES, MINIMAL};
 
 use crate::paths;
 
@@ -13,16 +14,16 @@ const START: &str = "/* The cartoon model and the 23 emotes, for pantin_face.h. 
 #define PANTIN_FACE_DATA_H
 
 #include \"pantin_face.h\"
+#include \"pantin_flash.h\"
+";
 
-#if defined(__AVR__)
-#include <avr/pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#elif defined(ESP8266)
-#include <pgmspace.h>
-#define PANTIN_MODEL_FLASH PROGMEM
-#else
-#define PANTIN_MODEL_FLASH
-#endif
+const THEMES_START: &str = "/* Two faces for pantin_face.h beside the cartoon: eyes alone, and a face of few strokes. `cargo xtask vectors` writes this file.
+ * Include it in one source file. */
+#ifndef PANTIN_FACE_THEMES_H
+#define PANTIN_FACE_THEMES_H
+
+#include \"pantin_face.h\"
+#include \"pantin_flash.h\"
 ";
 
 /// The longest line of numbers.
@@ -36,7 +37,7 @@ pub fn path() -> PathBuf {
 /// The file's text.
 pub fn text() -> String {
     let mut text = START.to_owned();
-    array(&mut text, "pantin_cartoon", CARTOON, " PANTIN_MODEL_FLASH");
+    array(&mut text, "pantin_cartoon", CARTOON, " PANTIN_FLASH");
     for (name, clip) in EMOTES {
         array(&mut text, &format!("pantin_emote_{name}"), clip, "");
     }
@@ -46,6 +47,19 @@ pub fn text() -> String {
         let _ = writeln!(text, "    {{\"{name}\", pantin_emote_{name}, sizeof pantin_emote_{name}}},");
     }
     text + "};\n\n#endif\n"
+}
+
+/// The committed file of the other faces.
+pub fn themes_path() -> PathBuf {
+    paths::root().join("bindings/c/src/pantin_face_themes.h")
+}
+
+/// Its text.
+pub fn themes_text() -> String {
+    let mut text = THEMES_START.to_owned();
+    array(&mut text, "pantin_eyes", EYES, " PANTIN_FLASH");
+    array(&mut text, "pantin_minimal", MINIMAL, " PANTIN_FLASH");
+    text + "\n#endif\n"
 }
 
 fn array(text: &mut String, name: &str, bytes: &[u8], place: &str) {

@@ -12,17 +12,7 @@ const START: &str = "/* Tables of figures: sines, rotations, the camera. `cargo 
 #ifndef PANTIN_FIGURE_TABLES_H
 #define PANTIN_FIGURE_TABLES_H
 
-/* On AVR the tables stay in flash, which needs other instructions than RAM. */
-#ifdef __AVR__
-#include <avr/pgmspace.h>
-#define PANTIN_FLASH PROGMEM
-#define PANTIN_U16(address) pgm_read_word(address)
-#define PANTIN_I32(address) ((int32_t)pgm_read_dword(address))
-#else
-#define PANTIN_FLASH
-#define PANTIN_U16(address) (*(address))
-#define PANTIN_I32(address) (*(address))
-#endif
+#include \"pantin_flash.h\"
 ";
 
 /// The committed file.

@@ -6,8 +6,9 @@ mod arduino;
 mod blender;
 mod face;
 mod figure;
+mod flash;
 mod licences;
-mod lvgl;
+pub mod lvgl;
 mod micropython;
 mod python;
 mod readme;
@@ -29,7 +30,7 @@ use xtask::setup;
 use xtask::steps::Steps;
 
 /// The decoder, key clips, rotations, figures, solid ones, faces, lips for speech, the animator, and feet.
-const SOURCES: [&str; 9] = [
+pub const SOURCES: [&str; 9] = [
     "src/pantin.c",
     "src/pantin_keys.c",
     "src/pantin_turn.c",
@@ -222,7 +223,8 @@ impl Bindings {
         steps.run("animators against the crate's", || animator::transitions(&folder));
         steps.run("state machines against the crate's", || animator::machines(&folder));
         steps.run("feet of characters against the crate's", || animator::feet(&folder));
-        steps.run("a face on the test display of LVGL", lvgl::run);
+        steps.run("faces and bodies on the test display of LVGL", || lvgl::run(&folder));
+        steps.run("a face that speaks on the test display of LVGL", lvgl::speech);
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(&folder));
@@ -236,11 +238,8 @@ impl Bindings {
         }
         steps.run("a clip on an Arduino Uno in simavr", || uno::walk(&folder));
         steps.run("rotations on an Arduino Uno in simavr, and what they cost", || uno::turns(&folder));
-        steps.run("compiler of the ESP8266", || {
-            let mut command = Command::new("xtensa-lx106-elf-gcc");
-            command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include", "-r", "-nostdlib"]);
-            compile(command, &SOURCES, &folder.path().join("esp8266.elf")).map(drop)
-        });
+        steps.run("compiler of the ESP8266", || flash::sizes(&folder));
+        steps.run("tables in program memory", || flash::moved(&folder));
         steps.run("classes of the Arduino library", || arduino::classes(&folder));
         steps.run("examples of the Arduino library", || arduino::examples(&folder));
         steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
@@ -304,7 +303,7 @@ fn compile(mut command: Command, sources: &[&str], to: &Path) -> Result<PathBuf>
     Ok(to.to_owned())
 }
 
-fn output(mut command: Command) -> Result<Output> {
+pub fn output(mut command: Command) -> Result<Output> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("cannot start {name}"))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

@@ -57,6 +57,7 @@ impl Vectors {
         write_whole(&c_header::path(), c_header::text().as_bytes())?;
         write_whole(&c_figure::path(), c_figure::text().as_bytes())?;
         write_whole(&c_face::path(), c_face::text().as_bytes())?;
+        write_whole(&c_face::themes_path(), c_face::themes_text().as_bytes())?;
         write_whole(&folder.join(faces::NAME), faces::text()?.as_bytes())?;
         write_whole(&folder.join(turns::NAME), turns::text(&folder)?.as_bytes())?;
         write_whole(&folder.join(turns::SUMS), turns::sums_text(&folder)?.as_bytes())?;

@@ -13,6 +13,8 @@ class U8G2 {
     uint8_t nextPage(void);
     void drawPixel(u8g2_uint_t x, u8g2_uint_t y);
     void drawLine(u8g2_uint_t x1, u8g2_uint_t y1, u8g2_uint_t x2, u8g2_uint_t y2);
+    void setDrawColor(uint8_t color);
+    void drawHLine(u8g2_uint_t x, u8g2_uint_t y, u8g2_uint_t w);
     void drawDisc(u8g2_uint_t x0, u8g2_uint_t y0, u8g2_uint_t rad, uint8_t opt = 15);
 };
 class U8G2_SSD1306_128X64_NONAME_1_HW_I2C : public U8G2 {

@@ -47,6 +47,19 @@ fn the_device_keeps_within_a_tenth_of_a_percent() {
 }
 
 #[test]
+fn the_committed_faces_of_blocks_are_what_their_tables_make() {
+    let face = Face::new().unwrap();
+    for (name, committed) in [("eyes", pantin_face::EYES), ("minimal", pantin_face::MINIMAL)] {
+        let built = cartoon::build(&face.head, &face.blueprint, cartoon::named(name).unwrap()).unwrap();
+        let bytes = pantin_pictures::face::compact::encode(&built).unwrap();
+        assert!(committed == bytes, "write it again by `pantin face model --cartoon {name} -o firmware/face/{name}.model`");
+        let error = error::greatest(&built, &bytes).unwrap();
+        assert!(error.part < 0.002, "{name}: {error:?}");
+        assert_eq!(built.name_list(), face.blueprint.name_list() + "glasses\nhearts\ntears\nsound\n", "{name}");
+    }
+}
+
+#[test]
 fn the_committed_cartoon_is_what_its_table_makes() {
     let face = Face::new().unwrap();
     let cartoon = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
@@ -72,7 +85,19 @@ fn the_committed_cartoon_is_what_its_table_makes() {
         ("hidden 0 1 4", "expected aside,up"),
         ("prop hat 1 0,0", "no hidden shape 1 before it"),
         ("hidden 0 1,2 3\nprop hat 1 0,0 1,1", "3 corners, not 2"),
-        ("hidden 0 1,2 3\nprop smile 1 0,0 1,1 2,2", "has a unit smile already"),
+        ("hidden 0 1,2 3\nprop joy 1 0,0 1,1 2,2", "joy is a name of the face"),
+        ("gain joy 2", "no unit joy"),
+        ("gain smile 2\ngain smile 1", "line 2: a second gain smile"),
+        ("block 255 - 0,1 -2,3 4,5", "aside is 0 or more"),
+        ("block 255 paired 0,1 2,3", "3 to 32 corners"),
+        ("move lid 1 . . .", "no block 1 before it"),
+        ("block 255 paired 0,1 2,3 4,5\nmove lid 1 . .", "block 1 has 3 corners, not 2"),
+        ("block 255 paired 0,1 2,3 4,5\nmove head_up 1 . . .", "no unit head_up"),
+        ("block 255 paired 0,1 2,3 4,5\nmove lid 1 . . .\nmove lid 1 . . .", "lid moves block 1 already"),
+        (
+            "view 90 60 -90\nfill 255 paired eye-inner lid-upper eye-outer\nblock 255 paired 0,1 2,3 4,5\nmove lid 1 1,1 . .",
+            "lid rotates points that are drawn",
+        ),
     ] {
         let refused = format!("{:#}", cartoon::build(&face.head, &face.blueprint, table).unwrap_err());
         assert!(refused.contains(wanted), "{table}: {refused}");

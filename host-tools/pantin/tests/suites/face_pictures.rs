@@ -155,9 +155,6 @@ fn cut_off(pixels: &[u8], canvas: Canvas, round: bool) -> usize {
 fn no_unit_leaves_a_display_of_128x64_or_a_round_one_of_240x240() {
     let face = Face::new().unwrap();
     let wireframe = face.model().unwrap();
-    let cartoon = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
-    let shapes = compact::encode(&cartoon).unwrap();
-    let shapes = Model::new_checked(&shapes).unwrap();
     for sum in sums(&face) {
         // The neck's end lies on the lower edge of a square picture.
         let rest = cut_off(&picture(&face.blueprint, &wireframe, SMALL, ""), SMALL, false);
@@ -166,11 +163,16 @@ fn no_unit_leaves_a_display_of_128x64_or_a_round_one_of_240x240() {
         let lit = cut_off(&picture(&face.blueprint, &wireframe, ROUND, &sum), ROUND, true);
         assert!(lit <= rest, "{sum} lights {lit} pixels outside the circle, the neutral face {rest}");
     }
-    for sum in sums(&face).into_iter().chain(["glasses", "hearts", "tears", "sound"].map(String::from)) {
-        let small = picture(&cartoon, &shapes, SMALL, &sum);
-        assert_eq!(cut_off(&small, SMALL, false), 0, "the cartoon's {sum} leaves 128x64");
-        let round = picture(&cartoon, &shapes, ROUND, &sum);
-        assert_eq!(cut_off(&round, ROUND, true), 0, "the cartoon's {sum} leaves the circle");
+    for name in ["cartoon", "eyes", "minimal"] {
+        let blueprint = cartoon::build(&face.head, &face.blueprint, cartoon::named(name).unwrap()).unwrap();
+        let shapes = compact::encode(&blueprint).unwrap();
+        let shapes = Model::new_checked(&shapes).unwrap();
+        for sum in sums(&face).into_iter().chain(["glasses", "hearts", "tears", "sound"].map(String::from)) {
+            let small = picture(&blueprint, &shapes, SMALL, &sum);
+            assert_eq!(cut_off(&small, SMALL, false), 0, "{sum} of {name} leaves 128x64");
+            let round = picture(&blueprint, &shapes, ROUND, &sum);
+            assert_eq!(cut_off(&round, ROUND, true), 0, "{sum} of {name} leaves the circle");
+        }
     }
 }
 
@@ -226,6 +228,8 @@ fn render_draws_faces_of_other_models_and_interpolations() {
     assert_ne!(cartoon, drawn("1", &[]));
     done(folder, &["face", "model", "--cartoon", "-o", "shapes.model"], "shapes.model");
     assert_eq!(cartoon, drawn("1", &["--face", "shapes.model"]));
+    done(folder, &["face", "model", "--cartoon", "eyes", "-o", "eyes.model"], "eyes.model");
+    assert_eq!(drawn("1", &["--face", "eyes"]), drawn("1", &["--face", "eyes.model"]));
     let corner = |bytes: &[u8]| {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];

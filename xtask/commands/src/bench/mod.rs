@@ -18,6 +18,7 @@ mod guest;
 mod host;
 mod link;
 mod link_board;
+mod lvgl;
 mod paper;
 mod paper_keys;
 mod peers;
@@ -69,6 +70,8 @@ pub enum Part {
     Link,
     /// Guest instructions of transitions, layers and inverse kinematics, and the animator's code
     Animator,
+    /// The widget for LVGL against LVGL's GIF and Lottie: flash, RAM, stack, guest instructions per frame
+    Lvgl,
 }
 
 /// What every part works with.
@@ -109,6 +112,7 @@ impl Part {
             Self::Web => web::run(),
             Self::Link => link::run(setting),
             Self::Animator => animator::run(setting),
+            Self::Lvgl => lvgl::run(setting),
         }
     }
 

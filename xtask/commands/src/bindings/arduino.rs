@@ -77,23 +77,31 @@ pub fn classes(folder: &TempDir) -> Result<()> {
     std::fs::write(place.join("run.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "run")?)?;
     let hero = std::fs::read(paths::root().join("motions/character.ptb"))?;
     std::fs::write(place.join("hero.h"), c_header_of_bank(&pantin::Bank::new_checked(&hero)?, &hero, "hero")?)?;
-    let program = place.join("classes");
+    for (name, options) in [("classes", &[][..]), ("classes-esp8266", &["-DESP8266", "-Itests/flash"][..])] {
+        let printed = classes_with(folder, name, options)?;
+        ensure!(printed.lines().count() == 4, "{printed}");
+        println!("   {name}");
+        printed.lines().for_each(|line| println!("   {line}"));
+    }
+    Ok(())
+}
+
+/// Runs the classes as they are compiled with some options. As for an ESP8266, tables and clips are in program memory, as in `flash.rs`.
+fn classes_with(folder: &TempDir, name: &str, options: &[&str]) -> Result<String> {
+    let (place, program) = (folder.path(), folder.path().join(name));
     let mut objects = vec![];
-    for source in super::SOURCES {
-        let object = place.join(format!("library{}.o", objects.len()));
+    for source in super::SOURCES.into_iter().chain((!options.is_empty()).then_some("tests/flash/flash.c")) {
+        let object = place.join(format!("{name}{}.o", objects.len()));
         let mut gcc = Command::new("gcc");
-        gcc.arg("-std=c99").args(super::SANITIZERS);
+        gcc.arg("-std=c99").args(super::SANITIZERS).args(options);
         objects.push(super::compile(gcc, &[source], &object)?);
     }
     let mut compiler = Command::new("g++");
-    compiler.args(["-std=c++11", "-Wall", "-Wextra", "-Werror"]).args(super::SANITIZERS).arg("-I").arg(place);
-    compiler.arg("-I").arg(super::home().join("src")).arg("-I").arg(arduino::home().join("src"));
+    compiler.current_dir(super::home()).args(["-std=c++11", "-Wall", "-Wextra", "-Werror"]).args(super::SANITIZERS).args(options);
+    compiler.arg("-I").arg(place).arg("-Isrc").arg("-I").arg(arduino::home().join("src"));
     compiler.arg(arduino::home().join("tests/library.cpp")).args(objects).arg("-o").arg(&program);
     output(compiler)?;
-    let printed = String::from_utf8(output(Command::new(&program))?.stdout)?;
-    ensure!(printed.lines().count() == 4, "{printed}");
-    printed.lines().for_each(|line| println!("   {line}"));
-    Ok(())
+    Ok(String::from_utf8(output(Command::new(&program))?.stdout)?)
 }
 
 /// Writes the README's sketch beside the header that it includes.

@@ -21,6 +21,9 @@ const MOST_RAM: [u64; 2] = [3 * 1024, 5 * 1024];
 const PICTURES: u32 = 100;
 const MUTANTS: u32 = 2000;
 
+/// The models of the crate.
+const MODELS: [&str; 5] = ["cartoon", "eyes", "minimal", "small", "face"];
+
 fn model(name: &str) -> PathBuf {
     paths::root().join("firmware/face").join(name).with_extension("model")
 }
@@ -48,7 +51,7 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
         let both = [model("face"), model("small")];
         same("every frame", &expected, &run(&["frames"], &both, &[])?)?;
         same(faces::NAME, &golden, &run(&["emotes"], &both, &[])?)?;
-        for name in ["cartoon", "small", "face"] {
+        for name in MODELS {
             let (path, bytes) = (model(name), std::fs::read(model(name))?);
             for ([width, height], [orbit, tilt]) in [([128, 64], [0, 0]), ([240, 240], [0, 0]), ([171, 113], [30, -20])] {
                 let numbers = [width, height].map(|x: u16| x.to_string()).into_iter();
@@ -61,7 +64,11 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
             same("damaged models", &rust, &run(&["mutants"], &[path], &[MUTANTS.to_string()])?)?;
         }
     }
-    println!("   {} frames, {} damaged models", expected.lines().filter(|line| line.len() == 8).count(), 3 * MUTANTS);
+    println!(
+        "   {} frames, {} damaged models",
+        expected.lines().filter(|line| line.len() == 8).count(),
+        MODELS.len() as u32 * MUTANTS
+    );
     Ok(())
 }
 

@@ -1,4 +1,6 @@
-//! The widget for LVGL on LVGL's test display: `bindings/lvgl/tests/widget.c`.
+//! The widget for LVGL on LVGL's test display: `bindings/lvgl/tests/widget.c` and `body.c`.
+
+mod speech;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,36 +8,86 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, ensure};
-use harness::paths;
+use harness::{build, paths};
 use serde_json::Value;
+pub use speech::speech;
+use tempfile::TempDir;
 
+use super::animator::own_bank;
 use super::{SANITIZERS, SOURCES, output};
 
-/// Builds LVGL and the widget, and runs the test.
-pub fn run() -> Result<()> {
-    let lvgl = sources()?;
-    let folder = paths::root().join("target/lvgl");
-    std::fs::create_dir_all(&folder)?;
-    let library = library(&lvgl, &folder)?;
-    let home = home();
-    let program = folder.join("widget");
-    let mut gcc = Command::new("gcc");
-    gcc.current_dir(&home).args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE"]).args(SANITIZERS);
-    gcc.args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(&lvgl).args(["tests/widget.c", "src/lv_pantin.c"]);
-    gcc.args(SOURCES.map(|source| Path::new("../c").join(source))).arg(&library).arg("-lm").arg("-o").arg(&program);
-    output(gcc)?;
-    let printed = String::from_utf8(output(Command::new(&program))?.stdout)?;
-    ensure!(printed.lines().count() == 4, "{printed}");
-    printed.lines().for_each(|line| println!("   {line}"));
-    Ok(())
+/// How LVGL's sources and programs for it are compiled.
+pub struct Build {
+    /// Names the folder of the objects.
+    pub name: &'static str,
+    /// The compilers for C and, where the sources in C++ are wanted, for C++.
+    pub compilers: [Option<&'static str>; 2],
+    /// Their options.
+    pub options: &'static [&'static str],
+    /// The folder of `lv_conf.h` in `bindings/lvgl`.
+    pub settings: &'static str,
 }
 
-fn home() -> PathBuf {
+/// For this machine.
+const HERE: Build = Build { name: "here", compilers: [Some("gcc"), None], options: &["-O1"], settings: "tests" };
+
+/// Builds LVGL and the widget, and runs the tests.
+pub fn run(folder: &TempDir) -> Result<()> {
+    let convert = |motions: &[&str], name: &str| -> Result<PathBuf> {
+        let made = folder.path().join(name);
+        let mut tool = Command::new(build::host_tool()?);
+        tool.current_dir(paths::root().join("motions")).arg("convert").args(motions).args(["--segments", "-o"]).arg(&made);
+        output(tool)?;
+        Ok(made)
+    };
+    let bank = convert(&["walk.keys", "run.keys"], "clips.ptb")?;
+    let once = convert(&["library/bow.keys"], "once.ptn")?;
+    let feet = folder.path().join("feet.ptb");
+    std::fs::write(&feet, own_bank(folder)?)?;
+    let motions = paths::root().join("motions");
+    let files = [motions.join("walk.ptn"), bank, motions.join("character.ptb"), feet, once];
+    for (name, lines, files) in [("widget", 4, &[][..]), ("body", 3, &files)] {
+        let mut program = Command::new(program(name, &SANITIZERS)?);
+        program.args(files);
+        let printed = String::from_utf8(output(program)?.stdout)?;
+        ensure!(printed.lines().count() == lines, "{printed}");
+        printed.lines().for_each(|line| println!("   {line}"));
+    }
+    // Without bodies.
+    let mut alone = Command::new("gcc");
+    alone.args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE", "-DLV_PANTIN_WITHOUT_BODY", "-c"]);
+    alone.current_dir(home()).args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(sources()?);
+    alone.args(["src/lv_pantin.c", "-o"]).arg(folder.path().join("alone.o"));
+    output(alone).map(drop)
+}
+
+/// Builds one of the tests with the widget, LVGL and all our sources for this machine.
+fn program(name: &str, options: &[&str]) -> Result<PathBuf> {
+    let (lvgl, library) = (sources()?, library(&HERE)?);
+    let program = folder(&HERE)?.join(name);
+    let mut gcc = Command::new("gcc");
+    gcc.current_dir(home()).args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE"]).args(options);
+    gcc.args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(&lvgl).arg(format!("tests/{name}.c"));
+    gcc.args(["src/lv_pantin.c", "src/lv_pantin_body.c"]).args(SOURCES.map(|source| Path::new("../c").join(source)));
+    gcc.arg(&library).arg("-lm").arg("-o").arg(&program);
+    output(gcc)?;
+    Ok(program)
+}
+
+/// The folder of the widget.
+pub fn home() -> PathBuf {
     paths::root().join("bindings/lvgl")
 }
 
+/// Where objects of a build go.
+pub fn folder(build: &Build) -> Result<PathBuf> {
+    let folder = paths::root().join("target/lvgl").join(build.name);
+    std::fs::create_dir_all(&folder)?;
+    Ok(folder)
+}
+
 /// The folder of LVGL's sources, which cargo fetches with the crate that has them.
-fn sources() -> Result<PathBuf> {
+pub fn sources() -> Result<PathBuf> {
     let mut cargo = Command::new("cargo");
     cargo.current_dir(home().join("tests")).args(["metadata", "--locked", "--format-version", "1"]);
     let metadata: Value = serde_json::from_slice(&output(cargo)?.stdout)?;
@@ -46,28 +98,50 @@ fn sources() -> Result<PathBuf> {
 }
 
 /// Compiles LVGL to a library, unless this was done with the same settings.
-fn library(lvgl: &Path, folder: &Path) -> Result<PathBuf> {
+pub fn library(build: &Build) -> Result<PathBuf> {
+    let (lvgl, folder) = (sources()?, folder(build)?);
     let (library, settings) = (folder.join("liblvgl.a"), folder.join("settings"));
-    let wanted = format!("{}\n{}", lvgl.display(), std::fs::read_to_string(home().join("tests/lv_conf.h"))?);
+    let conf = home().join(build.settings).join("lv_conf.h");
+    let wanted = format!("{}\n{:?}\n{}", lvgl.display(), build.options, std::fs::read_to_string(&conf)?);
     if library.exists() && std::fs::read_to_string(&settings).is_ok_and(|built| built == wanted) {
         return Ok(library);
     }
     let mut files = vec![];
-    c_files(&lvgl.join("src"), &mut files)?;
+    for (compiler, extension) in build.compilers.into_iter().zip(["c", "cpp"]) {
+        files_of(&lvgl.join("src"), extension, compiler, &mut files)?;
+    }
     ensure!(files.len() > 300, "LVGL has {} sources", files.len());
     println!("   compiling {} sources of LVGL", files.len());
-    let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
     let objects: Vec<PathBuf> = (0..files.len()).map(|index| folder.join(format!("{index}.o"))).collect();
+    each(&files, |index, (compiler, file)| {
+        let mut command = Command::new(compiler);
+        command
+            .args(build.options)
+            .args(["-w", "-DLV_CONF_INCLUDE_SIMPLE", "-I"])
+            .arg(conf.with_file_name(""))
+            .arg("-I")
+            .arg(&lvgl);
+        command.arg("-c").arg(file).arg("-o").arg(folder.join(format!("{index}.o")));
+        output(command).map(drop)
+    })?;
+    let mut ar = Command::new("ar");
+    ar.arg("rcs").arg(&library).args(&objects);
+    let _ = std::fs::remove_file(&library);
+    output(ar)?;
+    std::fs::write(settings, wanted)?;
+    Ok(library)
+}
+
+/// Runs a function for each of some things, on all processors. The first error ends it.
+fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> Result<()> {
+    let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
     let work = || {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            let (Some(file), Some(object)) = (files.get(index), objects.get(index)) else { return };
-            let mut gcc = Command::new("gcc");
-            gcc.args(["-O1", "-w", "-DLV_CONF_INCLUDE_SIMPLE", "-I"]).arg(home().join("tests")).arg("-I").arg(lvgl);
-            gcc.arg("-c").arg(file).arg("-o").arg(object);
-            if let Err(error) = output(gcc) {
+            let Some(thing) = things.get(index) else { return };
+            if let Err(error) = run(index, thing) {
                 *failed.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(error);
-                next.store(files.len(), Ordering::Relaxed);
+                next.store(things.len(), Ordering::Relaxed);
             }
         }
     };
@@ -76,24 +150,24 @@ fn library(lvgl: &Path, folder: &Path) -> Result<PathBuf> {
             scope.spawn(work);
         }
     });
-    if let Some(error) = failed.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()) {
-        return Err(error);
-    }
-    let mut ar = Command::new("ar");
-    ar.arg("rcs").arg(&library).args(&objects);
-    output(ar)?;
-    std::fs::write(settings, wanted)?;
-    Ok(library)
+    failed.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()).map_or(Ok(()), Err)
 }
 
-fn c_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+/// Lists the files with an extension below a folder, for a compiler.
+fn files_of(
+    folder: &Path,
+    extension: &str,
+    compiler: Option<&'static str>,
+    files: &mut Vec<(&'static str, PathBuf)>,
+) -> Result<()> {
+    let Some(compiler) = compiler else { return Ok(()) };
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     entries.sort();
     for path in entries {
         if path.is_dir() {
-            c_files(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "c") {
-            files.push(path);
+            files_of(&path, extension, Some(compiler), files)?;
+        } else if path.extension().is_some_and(|own| own == extension) {
+            files.push((compiler, path));
         }
     }
     Ok(())

@@ -16,9 +16,12 @@ fn c_literal(name: &str) -> String {
     format!("\"{}\"", escaped.collect::<String>())
 }
 
-/// On an AVR, constants are in RAM unless they are declared to be in flash.
-const FLASH: &str = "#ifdef __AVR__
+/// On an AVR and an ESP8266, constants are in RAM unless they are declared to be in flash.
+const FLASH: &str = "#if defined(__AVR__)
 #include <avr/pgmspace.h>
+#define PANTIN_FLASH PROGMEM
+#elif defined(ESP8266)
+#include <pgmspace.h>
 #define PANTIN_FLASH PROGMEM
 #else
 #define PANTIN_FLASH

@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
   pantin face model -o robot.model robot.obj --points robot.points --sheet robot.png
   pantin face model -o face.model --interpolation smile=spherical:40 --interpolation puff_cheeks=linear
   pantin face model -o cartoon.model --cartoon
+  pantin face model -o eyes.model --cartoon eyes
   pantin face model -o small.model --small
   pantin face model -o cube.model cube.glb")]
 pub struct Arguments {
@@ -31,8 +32,8 @@ pub struct Arguments {
     /// How a unit moves: linear, improved, eased, or spherical with an angle of 2 to 120 degrees; may be given several times
     #[arg(long, value_name = "UNIT=KIND[:DEGREES]")]
     interpolation: Vec<String>,
-    /// A face of filled shapes instead of the wireframe head: Pantin's cartoon face, or that of a text file (docs/FACE.md)
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "mesh")]
+    /// A face of filled shapes instead of the wireframe head: cartoon (without a value), eyes or minimal, or that of a text file (docs/FACE.md)
+    #[arg(long, value_name = "NAME|FILE", num_args = 0..=1, conflicts_with = "mesh")]
     cartoon: Option<Option<PathBuf>>,
     /// Leave out what a face of fewer than 96 pixels does not show: the same pictures on small displays, with less memory
     #[arg(long)]
@@ -52,7 +53,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     refuse_foreign(&arguments.output, Wanted::Model)?;
     let inputs: Vec<&Path> =
-        arguments.mesh.iter().chain(&arguments.points).chain(arguments.cartoon.iter().flatten()).map(PathBuf::as_path).collect();
+        arguments.mesh.iter().chain(&arguments.points).chain(arguments.table()).map(PathBuf::as_path).collect();
     let outputs = [Some(&arguments.output), arguments.names.as_ref(), arguments.sheet.as_ref()];
     let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
     if let Some(sheet) = &arguments.sheet {
@@ -113,10 +114,20 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     write_together(&outputs.into_iter().zip(contents.into_iter().flatten()).collect::<Vec<_>>())
 }
 
+impl Arguments {
+    /// The file of a face of filled shapes.
+    fn table(&self) -> Option<&PathBuf> {
+        self.cartoon.iter().flatten().find(|path| path.to_str().and_then(cartoon::named).is_none())
+    }
+}
+
 /// The face of filled shapes of a table.
 fn of_shapes(table: Option<&Path>, files: &dyn Files) -> Result<Blueprint> {
     let face = Face::new()?;
     let Some(path) = table else { return cartoon::build(&face.head, &face.blueprint, cartoon::TABLE) };
+    if let Some(own) = path.to_str().and_then(cartoon::named) {
+        return cartoon::build(&face.head, &face.blueprint, own);
+    }
     let text = String::from_utf8(import::read_from(files, path)?).with_context(|| path.display().to_string())?;
     cartoon::build(&face.head, &face.blueprint, &text).with_context(|| path.display().to_string())
 }

@@ -30,8 +30,6 @@ pub(super) const EASY_TO_SEE_IN_A_SHEET: usize = 256;
 const MOST_ENLARGED: usize = 4;
 /// Columns and rows of a picture without --size.
 const SIZE: &str = "128x64";
-/// The name of the face of filled shapes.
-const CARTOON: &str = "cartoon";
 /// Colours without --palette.
 const PALETTE: &str = "grey";
 
@@ -102,7 +100,7 @@ pub struct Arguments {
     /// Use a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
-    /// The face that the clip drives: cartoon, or a model of `pantin face model` [default: Pantin's wireframe head; with --face-at neck: cartoon]
+    /// The face that the clip drives: cartoon, eyes, minimal, or a model of `pantin face model` [default: Pantin's wireframe head; with --face-at neck: cartoon]
     #[arg(long, value_name = "MODEL")]
     face: Option<PathBuf>,
     /// Where a clip with a body and a face shows its face; neck is for --style solid
@@ -271,11 +269,18 @@ pub(super) fn easy_scale(easy: usize, [width, _]: [usize; 2]) -> usize {
     (easy / width).clamp(1, MOST_ENLARGED)
 }
 
+/// The model of one of our faces of filled shapes.
+fn named(face: &Path) -> Option<(&str, &'static [u8])> {
+    let models = [("cartoon", pantin_face::CARTOON), ("eyes", pantin_face::EYES), ("minimal", pantin_face::MINIMAL)];
+    models.into_iter().find(|own| face.as_os_str() == own.0)
+}
+
 impl Arguments {
     /// The bytes of the face's model.
     fn model(&self) -> Result<Vec<u8>> {
-        let is_cartoon = self.face.as_ref().map_or(self.face_at == FaceAt::Neck, |name| name.as_os_str() == CARTOON);
-        if let Some(path) = self.face.as_ref().filter(|_| !is_cartoon) {
+        let on_neck = (self.face_at == FaceAt::Neck).then_some(Path::new("cartoon"));
+        let named = self.face.as_deref().or(on_neck).and_then(named);
+        if let Some(path) = self.face.as_ref().filter(|_| named.is_none()) {
             let place = || path.display().to_string();
             ensure!(
                 self.interpolation.is_empty(),
@@ -285,12 +290,12 @@ impl Arguments {
             return memory::read(path).with_context(place);
         }
         if self.interpolation.is_empty() {
-            return Ok(if is_cartoon { pantin_face::CARTOON } else { pantin_face::MODEL }.to_vec());
+            return Ok(named.map_or(pantin_face::MODEL, |own| own.1).to_vec());
         }
         let face = Face::new()?;
-        let mut blueprint = match is_cartoon {
-            true => cartoon::build(&face.head, &face.blueprint, cartoon::TABLE)?,
-            false => face.blueprint,
+        let mut blueprint = match named.and_then(|own| cartoon::named(own.0)) {
+            Some(table) => cartoon::build(&face.head, &face.blueprint, table)?,
+            None => face.blueprint,
         };
         blueprint.choose_all(&self.interpolation)?;
         compact::encode(&blueprint)
@@ -312,7 +317,7 @@ impl Arguments {
 
     /// Checks the output before any work.
     fn check(&self, output: &Path) -> Result<()> {
-        let face = self.face.as_deref().filter(|name| name.as_os_str() != CARTOON);
+        let face = self.face.as_deref().filter(|name| named(name).is_none());
         let more = [self.rig.as_deref(), face, self.look.as_deref()];
         let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(more.into_iter().flatten()).collect();
         check(&inputs, &[output])?;

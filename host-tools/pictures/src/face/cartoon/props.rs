@@ -22,8 +22,8 @@ pub(super) fn curves(hidden: &[Hidden], corners: &[usize]) -> impl Iterator<Item
     })
 }
 
-/// Adds the props as shapes, each with a channel of its name. Props of one name become one shape. `corners` holds the first corner of each
-/// hidden shape.
+/// Adds the props as shapes, each with a channel of its name, or to a unit of the face that has this name. Props of one name become one shape. `corners` holds
+/// the first corner of each hidden shape.
 pub(super) fn add(table: &Table, corners: &[usize], shapes: &mut Vec<Shape>, names: &mut Vec<Drive>) {
     for Prop { name, hidden, places } in &table.props {
         let (from, first) = (table.hidden[*hidden].place, corners[*hidden]);

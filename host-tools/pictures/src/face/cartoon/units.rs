@@ -1,22 +1,26 @@
 //! The face's own units and openings, on the points that stay.
 
 use super::points::Kept;
+use super::table::Table;
 use super::zoom::{Enlarged, is_eyeball};
 use crate::face::blueprint::{Blueprint, Opening, Shape, Turn};
-use crate::face::head::{self, plus};
+use crate::face::head::{self, Vector, plus};
 use pantin_face::shape::ShapeKind;
 
-/// The shapes of the face, enlarged with the parts that they move; the jaw turns by the part `jaw` of its angle.
-pub(super) fn shapes(face: &Blueprint, kept: &Kept, enlarged: &Enlarged, jaw: f64) -> Vec<Shape> {
-    let shape = |shape: &Shape| {
+/// The shapes of the face, enlarged with the parts that they move and by the table's gains; the jaw turns by a part of its angle.
+pub(super) fn shapes(face: &Blueprint, kept: &Kept, enlarged: &Enlarged, table: &Table) -> Vec<Shape> {
+    let shape = |(unit, shape): (usize, &Shape)| {
+        let gain = table.gains.iter().find(|gain| gain.0 == unit).map_or(1.0, |gain| gain.1);
         let deltas = shape.deltas.iter().filter(|entry| kept.has(entry.0));
-        let deltas =
-            deltas.map(|&(index, way)| (kept.renumbered(index), way.map(|x| x * enlarged.factor_and_offset(index).0))).collect();
-        let turns = shape.turns.iter().map(|turn| rotation(turn, kept, enlarged, jaw));
+        let moved = |&(index, way): &(usize, Vector)| {
+            (kept.renumbered(index), way.map(|x| x * gain * enlarged.factor_and_offset(index).0))
+        };
+        let deltas = deltas.map(moved).collect();
+        let turns = shape.turns.iter().map(|turn| rotation(turn, kept, enlarged, table.jaw));
         let turns = turns.filter(|turn| !turn.members.is_empty() || shape.kind == ShapeKind::Head).collect();
         Shape { deltas, turns, ..shape.clone() }
     };
-    face.shapes.iter().map(shape).collect()
+    face.shapes.iter().enumerate().map(shape).collect()
 }
 
 fn rotation(turn: &Turn, kept: &Kept, enlarged: &Enlarged, jaw: f64) -> Turn {
