@@ -64,8 +64,8 @@ fn a_cortex_m4_shows_the_hosts_face_on_the_neck() {
     // From all sides, then as lines, which have no face.
     let keys: Vec<&[u8]> = std::iter::repeat_n(&b"dd"[..], 13).chain([&b"o"[..], b"o"]).collect();
     let words = ["solid", "neck"];
-    let expected = simulator::play::<Rotation>(MACHINE.display.unwrap(), &[clip.clone()], &words, &keys).unwrap();
-    let beside = simulator::play::<Rotation>(MACHINE.display.unwrap(), &[clip], &["solid"], &keys).unwrap();
+    let expected = simulator::play::<Rotation>(MACHINE.display.unwrap(), std::slice::from_ref(&clip), &words, &keys).unwrap();
+    let beside = simulator::play::<Rotation>(MACHINE.display.unwrap(), std::slice::from_ref(&clip), &["solid"], &keys).unwrap();
     assert!(expected.iter().zip(&beside).all(|(neck, beside)| neck.1 != beside.1));
     let means: Vec<f64> =
         equal::shows_with(MACHINE, &firmware, &words, &expected, &keys).iter().map(|kind| kind.mean()).collect();

@@ -256,6 +256,27 @@ fn render_draws_faces_of_other_models_and_interpolations() {
 }
 
 #[test]
+fn a_face_on_the_neck_takes_the_cartoon_and_needs_a_body_and_a_face() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let greet = motion("greet.ptn");
+    let drawn = |more: &[&str]| {
+        let plain = ["render", greet.to_str().unwrap(), "-o", "out.png", "--frame", "40", "--style", "solid", "--view", "front"];
+        done(folder, &[&plain, more].concat(), "out.png")
+    };
+    let neck = drawn(&["--face-at", "neck"]);
+    assert_eq!(neck, drawn(&["--face-at", "neck", "--face", "cartoon"]));
+    assert_ne!(neck, drawn(&["--face", "cartoon"]));
+    assert_eq!(drawn(&[]), drawn(&["--face-at", "beside"]));
+    let walk = motion("walk.ptn");
+    for (clip, style, wanted) in [(&walk, "solid", "a body and a face"), (&greet, "lines", "--style solid")] {
+        let out = pantin(folder, &["render", clip.to_str().unwrap(), "-o", "no.png", "--face-at", "neck", "--style", style]);
+        let error = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(!out.status.success() && error.contains(wanted), "{style}: {error}");
+    }
+}
+
+#[test]
 fn a_pose_is_exported_as_the_picture_that_a_display_shows() {
     let folder = tempfile::tempdir().unwrap();
     let bytes = done(folder.path(), &["face", "export", "-o", "joy.png", "--pose", "joy", "--scale", "2"], "joy.png");
