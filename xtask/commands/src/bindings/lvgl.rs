@@ -13,7 +13,6 @@ use serde_json::Value;
 pub use speech::speech;
 use tempfile::TempDir;
 
-use super::animator::own_bank;
 use super::{SANITIZERS, SOURCES, output};
 
 /// How LVGL's sources and programs for it are compiled.
@@ -42,10 +41,9 @@ pub fn run(folder: &TempDir) -> Result<()> {
     };
     let bank = convert(&["walk.keys", "run.keys"], "clips.ptb")?;
     let once = convert(&["library/bow.keys"], "once.ptn")?;
-    let feet = folder.path().join("feet.ptb");
-    std::fs::write(&feet, own_bank(folder)?)?;
     let motions = paths::root().join("motions");
-    let files = [motions.join("walk.ptn"), bank, motions.join("character.ptb"), feet, once];
+    let feet = motions.join("character.ptb");
+    let files = [motions.join("walk.ptn"), bank, without_feet(folder, &feet)?, feet, once];
     for (name, lines, files) in [("widget", 4, &[][..]), ("body", 3, &files)] {
         let mut program = Command::new(program(name, &SANITIZERS)?);
         program.args(files);
@@ -59,6 +57,23 @@ pub fn run(folder: &TempDir) -> Result<()> {
     alone.current_dir(home()).args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(sources()?);
     alone.args(["src/lv_pantin.c", "-o"]).arg(folder.path().join("alone.o"));
     output(alone).map(drop)
+}
+
+/// Our character without the table of feet.
+fn without_feet(folder: &TempDir, character: &Path) -> Result<PathBuf> {
+    let [text, bank] = ["sliding.toml", "sliding.ptb"].map(|name| folder.path().join(name));
+    let own = std::fs::read_to_string(character.with_extension("toml"))?;
+    let without =
+        |line: &str| match line.split_once("sync = \"feet\"").map(|(before, after)| (before, after.split_once("frames"))) {
+            Some((before, Some((_, frames)))) => format!("{before}start = \"in-step\", frames{frames}\n"),
+            _ => format!("{line}\n"),
+        };
+    let sliding: String = own.lines().filter(|line| *line != "[feet]").map(without).collect();
+    std::fs::write(&text, sliding)?;
+    let mut machine = Command::new(build::host_tool()?);
+    machine.arg("machine").arg(&text).arg("--bank").arg(character).arg("-o").arg(&bank);
+    output(machine)?;
+    Ok(bank)
 }
 
 /// Builds one of the tests with the widget, LVGL and all our sources for this machine.
