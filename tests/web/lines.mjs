@@ -81,6 +81,14 @@ for (const clip of clips) {
   }
 }
 
+// A map that turns by less than can be told is no rotation: the square of its angle is rounded down, to no less than 0.
+const joints = [{ name: "", parent: -1, kinds: [10, 11, 12], first: 0, rest: [0, 0, 0] }];
+const [, , , , , turns, , inWorld] = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
+for (const map of [[-1, 0, 0], [0, -5000, 5], [-9, -9, -9]]) {
+  inWorld(map, [0, 0, 0]);
+  assert.deepEqual([...turns.slice(0, 9)], [32768, 0, 0, 0, 32768, 0, 0, 0, 32768], `${map}`);
+}
+
 // The character's inputs are fired one after the other while it walks on and off.
 const bytes = readFileSync(character);
 put(bytes);

@@ -103,7 +103,7 @@ const turnByUnit = (turns, at, w, x, y, z) => {
   columns.forEach((value, index) => (turns[at + index] = value));
 };
 const turnByExponential = (turns, at, map) => {
-  const square = map.reduce((sum, x) => sum + (x >> 16) * (x >> 16) + (((x >> 16) * ((x >> 4) & 0xfff)) >> 11), 0);
+  const square = map.reduce((sum, x) => Math.max(0, sum + (x >> 16) * (x >> 16) + (((x >> 16) * ((x >> 4) & 0xfff)) >> 11)), 0);
   const entry = HALF_ANGLES[square >>> 24];
   const next = HALF_ANGLES[(square >>> 24) + 1];
   const [w, scale] = entry.map((from, index) => from + (((next[index] - from) * ((square >>> 12) & 0xfff)) >> 12));
