@@ -81,13 +81,16 @@ for (const clip of clips) {
   }
 }
 
-// A map that turns by less than can be told is no rotation: the square of its angle is rounded down, to no less than 0.
-const joints = [{ name: "", parent: -1, kinds: [10, 11, 12], first: 0, rest: [0, 0, 0] }];
-const [, , , , , turns, , inWorld] = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
-for (const map of [[-1, 0, 0], [0, -5000, 5], [-9, -9, -9]]) {
-  inWorld(map, [0, 0, 0]);
-  assert.deepEqual([...turns.slice(0, 9)], [32768, 0, 0, 0, 32768, 0, 0, 0, 32768], `${map}`);
-}
+// Rotations where the firmware's integers end. A map that turns by less than can be told is no rotation: the square of its angle is rounded down, to no less than 0. The square of a
+// quaternion is no greater than 32 bits.
+const turned = (kinds, values) => {
+  const joints = [{ name: "", parent: -1, kinds, first: 0, rest: [0, 0, 0] }];
+  const [, , , , , turns, , inWorld] = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
+  inWorld(values, [0, 0, 0]);
+  return [...turns.slice(0, 9)];
+};
+for (const map of [[-1, 0, 0], [0, -5000, 5], [-9, -9, -9]]) assert.deepEqual(turned([10, 11, 12], map), [32768, 0, 0, 0, 32768, 0, 0, 0, 32768], `${map}`);
+assert.deepEqual(turned([6, 7, 8, 9], [33570, -34560421, 3585, 535762059]), [-32500, 4, -4209, -4, -32772, 0, -4209, 0, 32497]);
 
 // The character's inputs are fired one after the other while it walks on and off.
 const bytes = readFileSync(character);

@@ -115,7 +115,7 @@ const turnByQuaternion = (turns, at, q) => {
   let shift = bitLength(largest) - 15;
   const all = () => q.map((x) => shifted(x, shift));
   if (squareOf(all()) < 2 ** 30) shift--;
-  const above = squareOf(all()) - 2 ** 30;
+  const above = Math.min(3 * 2 ** 30 - 1, squareOf(all()) - 2 ** 30);
   const root = ROOTS[above >>> 23];
   const inverse = root + (((ROOTS[(above >>> 23) + 1] - root) * ((above >>> 8) & 0x7fff)) >> 15);
   turnByUnit(turns, at, ...all().map((x) => scaledBy(x, inverse)));
