@@ -339,7 +339,7 @@ export const animatorOf = (first, carrier) => {
     get events() {
       return events;
     },
-    // Lets the figure go a way of the world beside its clip's while the transition lasts. Nothing moves in this instant.
+    // Lets the figure go a way of the world beside its clip's while the transition lasts. Nothing moves in this instant; the next pose that is composed brings the place after.
     glide: (way) => {
       const turned = rotated(headingOf(-travel.heading[0] | 0), ...way).map((x, axis) => (root.place[axis] < 0 ? 0n : x));
       travel.origin = travel.origin.map((x, axis) => wide(x - turned[axis]));

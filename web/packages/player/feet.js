@@ -8,11 +8,9 @@ const Q22 = 2 ** 22;
 const MOST = 2 ** 31 - 1;
 // The shape of a group that is an exponential map; of those below, angles one by one.
 const MAP = 2;
-// The least and the greatest bend of a knee: 1 degree and 150.
 // Where the inner parts of a figure have its rotations, and what places its joints.
 const TURNS = 5;
 const PLACE = 7;
-// Most joints from the root to an ankle.
 // Microseconds in which a foot that is let go comes back to its clip.
 const RELEASE = 200000;
 const ORIGIN = [0, 0, 0];
@@ -167,9 +165,10 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const joints = [ankle, ...others.slice(0, count)];
     const chain = chainOf(ankle);
     const leg = [-1, ...chain].slice(-4);
+    // A leg has three joints, and 12 lead to an ankle at most.
     must(count < 5 && !reserved && chain.length > 2 && chain.length < 13);
     joints.forEach((joint, index) => must(!index || joints.slice(0, index).includes(rig.joints[joint]?.parent)));
-    // Lengths of thigh and shin.
+    // Lengths of thigh and shin, and the distances of hip and ankle that the knee allows: it bends by 150 degrees at most, and by 1 degree at least.
     const [upper, lower] = leg.slice(2).map((index) => directionOf(offsetOf(index))[1]);
     must(upper && lower);
     const [closest, farthest] = [1789569707, 11930465].map((bend) => floor(sqrt(max(0, upper ** 2 + lower ** 2 + floor((2 * upper * lower * sinCosOf(bend)[1]) / ONE)))));
