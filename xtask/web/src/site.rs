@@ -86,6 +86,7 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         let page = inline::page(out, &bytes, &name.to_string_lossy()).with_context(|| clip.display().to_string())?;
         write(&out.join(name).with_extension("html"), page.as_bytes())?;
     }
+    tools::compress(&out.join("clips"))?;
     tools::compress(out)
 }
 
