@@ -1,11 +1,12 @@
 //! Scripts for animators and state machines, and what the crate pantin-animator makes of them: as `bindings/c/tests/animator.c` and `tests/web/animator.mjs` print it.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 
 use fixed::types::I16F16;
 use pantin::{Angle, Bank, ChannelState, Clip};
 use pantin_animator::machine::TableError;
-use pantin_animator::machine::{LAYERS, SECTION, Table};
+use pantin_animator::machine::{FEET_SECTION, LAYERS, SECTION, Table};
 use pantin_animator::session::{Input, Session};
 use pantin_animator::{Animator, Character, Error, Feet, LayerWorkspace, Placement, Transition, Workspace};
 
@@ -164,16 +165,37 @@ pub fn damaged(sources: &[Vec<u8>], numbers: &mut Sequence) -> Vec<u8> {
     if numbers.below(8) > 0 {
         hostile::fix::bank(&mut bytes);
         hostile::fix::clips_of_bank(&mut bytes);
-        mend_table(&mut bytes);
+        mend_table(&mut bytes, SECTION);
     }
     bytes
 }
 
-/// Makes the checksum of a bank's table right, as far as its sections can be told.
-fn mend_table(bytes: &mut [u8]) {
-    let Some(table) = Bank::new_checked(bytes).ok().and_then(|bank| bank.section(SECTION).ok().flatten()) else { return };
-    let (at, len) = (table.as_ptr().addr() - bytes.as_ptr().addr(), table.len());
-    hostile::fix::rig(&mut bytes[at..at + len]);
+/// A bank whose table of feet is damaged in one or two places; its checksum is right, mostly.
+pub fn with_damaged_feet(bank: &[u8], numbers: &mut Sequence) -> Vec<u8> {
+    let mut bytes = bank.to_vec();
+    let Some(table) = table_of(bank, FEET_SECTION) else { return bytes };
+    for _ in 0..=numbers.below(2) {
+        let at = table.start + numbers.below(table.len() as u32) as usize;
+        bytes[at] ^= 1 << numbers.below(8);
+    }
+    if numbers.below(8) > 0 {
+        mend_table(&mut bytes, FEET_SECTION);
+    }
+    bytes
+}
+
+/// Where a table is in a bank, as far as its sections can be told.
+fn table_of(bytes: &[u8], section: u8) -> Option<Range<usize>> {
+    let table = Bank::new_checked(bytes).ok()?.section(section).ok()??;
+    let at = table.as_ptr().addr() - bytes.as_ptr().addr();
+    Some(at..at + table.len())
+}
+
+/// Makes the checksum of a table right.
+fn mend_table(bytes: &mut [u8], section: u8) {
+    if let Some(table) = table_of(bytes, section) {
+        hostile::fix::rig(&mut bytes[table]);
+    }
 }
 
 /// The clips among these files by their rig, and the rig's number with them.

@@ -18,6 +18,8 @@ pub mod download;
 #[cfg(feature = "full")]
 pub mod equal;
 #[cfg(feature = "full")]
+pub mod feet;
+#[cfg(feature = "full")]
 pub mod gba;
 pub mod icount;
 #[cfg(feature = "full")]

@@ -98,9 +98,9 @@ pub fn crcs() -> Result<Crcs> {
     Ok(Crcs { stepped, sought: vec![] })
 }
 
-/// What the page's player, which holds no feet, shows of it at the size of the reference board's display, drawn here.
+/// What the page's player shows of it, at the size of the reference board's display, drawn here.
 pub fn pictures() -> Result<Vec<Picture>> {
-    let bytes = without_feet()?;
+    let bytes = std::fs::read(bank())?;
     let mut stage = Stage::new(&bytes, [OLED.width, OLED.height], View::default(), None)?;
     let mut framebuffer = Framebuffer::<Gray4Rows<128, 64, 1024>>::new();
     let mut shown = vec![];

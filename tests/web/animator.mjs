@@ -7,17 +7,15 @@ import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/d
 import { animatorOf } from "../../web/packages/player/animator.js";
 import { bankOf } from "../../web/packages/player/bank.js";
 import { opened } from "../../web/packages/player/character.js";
+import { feetOf } from "../../web/packages/player/feet.js";
+import { figureOf, maths } from "../../web/packages/player/figure.js";
 import { partOf } from "../../web/packages/player/track.js";
-
-// Pages lend no feet: no joint holds one.
-const NO_FEET = "65535 65535";
 
 const [, , what, script, ...files] = process.argv;
 const lines = readFileSync(script, "utf8").split("\n").filter(Boolean).map((line) => [line[0], ...line.slice(1).split(" ").filter(Boolean).map(Number)]);
 const out = [];
 
-function print(start, { inner, track, pose, placement: [place, heading], events }) {
-  const [left, lost] = inner();
+function print(start, { left, lost, track, pose, placement: [place, heading], events }) {
   const hash = pose.reduce((hash, value) => Math.imul(hash ^ value, 0x01000193), 0x811c9dc5) >>> 0;
   const fired = events.map(({ id, frame }) => ` ${id}:${frame}`).join("");
   out.push(`${start}${track.player.frame} ${partOf(track)} ${track.speed} ${+track.ended} ${left} ${place.join(" ")} ${heading} ${hash.toString(16).padStart(8, "0")}${fired} ${lost}\n`);
@@ -58,21 +56,21 @@ function steer(file) {
   const open = () => {
     // The element tells a bank by its first bytes.
     if (file[0] !== 80 || file[1] !== 98) throw new Error("pantin: not a bank");
-    const bank = bankOf(file, [fieldsOf, checked, openRawRig, openRawClip]);
+    const bank = bankOf(file, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]);
     // The element plays the clips of such a bank.
     if (!bank.machine) throw new Error("pantin: no state machine");
-    character = opened(bank, keys);
+    character = opened(bank, keys, feetOf);
   };
   if (refuses(open)) return out.push("refused\n");
   const { animator } = character;
-  print(`${character.state} ${NO_FEET} `, animator);
+  print(`${character.state} `, animator);
   for (const [word, ...n] of lines) {
     if (word === "f") character.fire(n[0]);
     else if (word === "h" || word === "r") character.hold(n[0], word === "h");
     else if (word === "s") character.set(...n);
     else {
       const isRefused = refuses(() => character.update(n[0]));
-      print(`${isRefused ? "refused" : +character.entered} ${character.state} ${NO_FEET} `, animator);
+      print(`${isRefused ? "refused" : +character.entered} ${character.state} `, animator);
     }
   }
 }

@@ -6,6 +6,7 @@ import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/d
 import { openClip } from "../../web/packages/decoder/index.js";
 import { bankOf } from "../../web/packages/player/bank.js";
 import { steer } from "../../web/packages/player/character.js";
+import { feetOf } from "../../web/packages/player/feet.js";
 import { figureOf, maths, visitor } from "../../web/packages/player/figure.js";
 
 const SIZES = [[128, 64], [320, 160], [640, 320], [390, 700]];
@@ -81,12 +82,23 @@ for (const clip of clips) {
   }
 }
 
+// Rotations where the firmware's integers end. A map that turns by less than can be told is no rotation: the square of its angle is rounded down, to no less than 0. The square of a
+// quaternion is no greater than 32 bits.
+const turned = (kinds, values) => {
+  const joints = [{ name: "", parent: -1, kinds, first: 0, rest: [0, 0, 0] }];
+  const [, , , , , turns, , inWorld] = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
+  inWorld(values, [0, 0, 0]);
+  return [...turns.slice(0, 9)];
+};
+for (const map of [[-1, 0, 0], [0, -5000, 5], [-9, -9, -9]]) assert.deepEqual(turned([10, 11, 12], map), [32768, 0, 0, 0, 32768, 0, 0, 0, 32768], `${map}`);
+assert.deepEqual(turned([6, 7, 8, 9], [33570, -34560421, 3585, 535762059]), [-32500, 4, -4209, -4, -32772, 0, -4209, 0, 32497]);
+
 // The character's inputs are fired one after the other while it walks on and off.
 const bytes = readFileSync(character);
 put(bytes);
 assert.equal(wasm.machine(slot, file, bytes.length), 0);
 const player = { draw() {}, dispatchEvent() {} };
-const actor = steer(bankOf(bytes, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]), player);
+const actor = steer(bankOf(bytes, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]), player, undefined, feetOf);
 const states = new Set();
 let turn = 0;
 const pass = (time) => {

@@ -6,8 +6,7 @@ const SINE = [4941520, 85555982, 693598003, 1686629708];
 const COSINE = [973605, 22399895, 272375455, 1324675878];
 const ARCTANGENT = [34631066, 69146217, 96821929, 136665923, 227854097, 683565272];
 // The orders in which the axes follow one another as x, y, z do are parts of this text.
-const EVEN = "XYZXY";
-export const ORDERS = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"];
+export const EVEN = "XYZXY";
 
 // The upper half of the product of two numbers below 2^32. Floating point has it within 2^-20, and `imul` the lower half exactly.
 const high = (a, b) => round((a * b - (imul(a, b) >>> 0)) / 2 ** 32);
@@ -133,7 +132,6 @@ export const turnByMap = (x, y, z) => {
   set(cosine, scaled(PART[1], sine), scaled(PART[2], sine), scaled(PART[3], sine));
   turn();
 };
-export const orderOf = (axes) => (axes ? ORDERS.find((order) => order.startsWith(axes) && (axes.length > 1 || EVEN.includes(order))) : "XYZ");
 // The Euler angles of the rotation.
 export const eulerOf = (order, out) => {
   const component = (at) => Q["XYZ".indexOf(order[at]) + 1];
@@ -155,60 +153,41 @@ export const eulerOf = (order, out) => {
 };
 // Its matrix, row by row.
 export const matrixOf = (out) => {
-  const w = Q[0];
-  const x = Q[1];
-  const y = Q[2];
-  const z = Q[3];
   const twice = (a, b, c, d) => sum(29, a, b, c, d, 0, 0, 0, 0);
-  out[0] = (ONE + twice(-y, y, -z, z)) | 0;
-  out[1] = twice(x, y, -w, z);
-  out[2] = twice(x, z, w, y);
-  out[3] = twice(x, y, w, z);
-  out[4] = (ONE + twice(-x, x, -z, z)) | 0;
-  out[5] = twice(y, z, -w, x);
-  out[6] = twice(x, z, -w, y);
-  out[7] = twice(y, z, w, x);
-  out[8] = (ONE + twice(-x, x, -y, y)) | 0;
+  for (let i = 0; i < 3; i++) {
+    const j = (i + 1) % 3;
+    const w = Q[0];
+    const x = Q[i + 1];
+    const y = Q[j + 1];
+    const z = Q[4 - i - j];
+    out[4 * i] = (ONE + twice(-y, y, -z, z)) | 0;
+    out[3 * i + j] = twice(x, y, -w, z);
+    out[3 * j + i] = twice(x, y, w, z);
+  }
   return out;
 };
 
-// How a joint of a clip is turned: `compute` makes the rotation of a pose's raw values. `order` is that of all of its angles, `stored` that in which they can be read.
-export const turnsOf = (clip, index) => {
-  const { first, kinds } = clip.joints[index];
-  const own = clip.rig.joints[index].kinds;
-  // Channels by what they mean: Euler angles and their axes, the components of what the clip codes as an exponential map in their place, then those
-  // of the joint's own quaternion and exponential map.
-  const angles = [];
-  const axes = [];
-  const coded = [];
-  const quaternion = [];
-  const map = [];
-  let letters = "";
-  own.forEach((kind, at) => {
-    const channel = first + at;
-    if (kind > 9) map[kind - 10] = channel;
-    else if (kind > 5) quaternion[kind - 6] = channel;
-    else if (kind > 2) {
-      letters += "XYZ"[kind - 3];
-      if (kinds === own) axes.push(kind - 3), angles.push(channel);
-      else coded.push(channel);
-    }
-  });
-  const others = (map.length > 0) + (quaternion.length > 0);
-  const order = others ? undefined : orderOf(letters);
-  const isChain = others + (letters > "") > 1 || (angles.length > 0 && !order);
-  const compute = (raw) => {
-    const value = (channel) => raw[channel] ?? 0;
+// What makes the rotation of a joint of a clip from a pose's raw values: by angles, or by the components of what the clip codes as an exponential map in their place, then by the joint's
+// own quaternion and its own exponential map.
+export const computeOf = (clip, index) => {
+  const { first, kinds } = clip.rig.joints[index];
+  const isCoded = clip.joints[index].kinds !== kinds;
+  // Axes and channels.
+  const angles = kinds.flatMap((kind, at) => (kind > 2 && kind < 6 ? [[kind - 3, first + at]] : []));
+  const hasMap = kinds.some((kind) => kind > 9);
+  const hasQuaternion = kinds.some((kind) => kind > 5 && kind < 10);
+  const isChain = hasQuaternion + hasMap + (angles.length > 0) > 1 || (!isCoded && new Set(angles.map(([axis]) => axis)).size < angles.length);
+  return (raw) => {
+    const value = (kind) => (kinds.includes(kind) ? raw[first + kinds.lastIndexOf(kind)] : 0);
     unturned();
-    for (let at = 0; at < angles.length; at++) turnAbout(axes[at], raw[angles[at]]);
-    if (coded.length) turnByMap(raw[coded[0]], raw[coded[1]], raw[coded[2]]);
-    if (quaternion.length) {
-      set(value(quaternion[0]), value(quaternion[1]), value(quaternion[2]), value(quaternion[3]));
+    if (isCoded) turnByMap(...angles.map(([, channel]) => raw[channel]));
+    else for (const [axis, channel] of angles) turnAbout(axis, raw[channel]);
+    if (hasQuaternion) {
+      set(value(6), value(7), value(8), value(9));
       normalize(PART);
       turn();
     }
-    if (map.length) turnByMap(value(map[0]), value(map[1]), value(map[2]));
+    if (hasMap) turnByMap(value(10), value(11), value(12));
     if (isChain) normalize(Q);
   };
-  return { compute, angles, order: letters ? order : undefined, stored: coded.length ? undefined : order };
 };

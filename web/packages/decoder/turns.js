@@ -1,7 +1,9 @@
 // @pantin/decoder/turns: the rotations of joints in integers, with the same bits as the decoder in Rust.
 //
 // A player is all that this module needs of the decoder: programs that do not import it do not load it.
-import { ORDERS, PART, Q, atan2, eulerOf, length, matrixOf, normalize, set, turnsOf } from "./turning.js";
+import { EVEN, PART, Q, atan2, computeOf, eulerOf, length, matrixOf, normalize, set } from "./turning.js";
+
+const ORDERS = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"];
 
 // A name without the prefix of its program, in small letters.
 const plain = (name) => name.split(":").pop().toLowerCase();
@@ -15,7 +17,14 @@ export const findJoint = (player, name) => {
     throw new Error("pantin: no joint " + name + (like ? "; there is " + like.name : ""));
   }
   const { first, kinds } = clip.joints[index];
-  const { compute, angles, order, stored } = turnsOf(clip, index);
+  const compute = computeOf(clip, index);
+  // The order of all of the joint's angles, which can be read where the clip does not code them as a map.
+  const own = clip.rig.joints[index].kinds;
+  const angles = own.flatMap((kind, at) => (kind > 2 && kind < 6 ? first + at : []));
+  const letters = angles.map((channel) => "XYZ"[own[channel - first] - 3]).join("");
+  const known = own.some((kind) => kind > 5) ? undefined : letters ? ORDERS.find((order) => order.startsWith(letters) && (letters.length > 1 || EVEN.includes(order))) : "XYZ";
+  const order = letters ? known : undefined;
+  const stored = kinds === own ? known : undefined;
   return {
     name, index, kinds, order,
     raw: () => kinds.map((_, at) => raw[first + at]),

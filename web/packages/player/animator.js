@@ -1,6 +1,6 @@
 // A figure that plays one clip after another, with transitions, root motion and events. The firmware's animator.rs, transition.rs, carry.rs and switch.rs state each step.
-import { abs, floor, imul, max, min, turnsOf } from "../decoder/turning.js";
-import { FREE, MOST, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, yawOf } from "./channels.js";
+import { abs, computeOf, floor, imul, max, min } from "../decoder/turning.js";
+import { FREE, MOST, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
 import { NORMAL, STATE, V, addPart, advance, eachMoving, isLast, partOf, passLaps, placed, seek, setSpeed, start, travelOf } from "./track.js";
 
 // Kinds of transitions: the third lets the difference of poses alone die out.
@@ -29,7 +29,7 @@ const rootOf = (clip, groups, carrier) => {
   const turning = kinds.findIndex((kind) => kind > 2);
   const [shape, begin, count] = groups.find(([, begin, , index]) => index === carrier && begin === first + turning) ?? [FREE, 0, 0];
   const place = [1, 2].map((next) => kinds.indexOf((axis + next) % 3)).map((at) => (at < 0 ? at : first + at));
-  return { axis, kinds, place, shape, channels: Array.from({ length: count }, (_, index) => begin + index), compute: turnsOf(clip, carrier).compute };
+  return { axis, kinds, place, shape, channels: Array.from({ length: count }, (_, index) => begin + index), compute: computeOf(clip, carrier) };
 };
 
 // The cubics that bring differences and velocities to zero in a number of frames: factors for both.
@@ -75,7 +75,8 @@ export const animatorOf = (first, carrier) => {
       if (event.frame >= (isForward ? to : from)) break;
       if (event.frame >= (isForward ? from : to)) passed.push(event);
     }
-    (isForward ? passed : passed.reverse()).forEach(note);
+    if (!isForward) passed.reverse();
+    passed.forEach(note);
   };
   const pass = ({ from, isAfter, to, isAfterTo, laps, forward }) => {
     const { frames } = track.clip;
@@ -87,9 +88,9 @@ export const animatorOf = (first, carrier) => {
     between(forward, first, end);
   };
 
-  const solve = () => {
+  const solve = (from = 0, to = channels) => {
     const [byPlace, byVelocity, end] = left > 2 ? cubicOf(left) : [];
-    for (let c = 0; c < channels; c++) {
+    for (let c = from; c < to; c++) {
       if (!left || !(d[c] | v[c])) d[c] = v[c] = w[c] = k[c] = 0;
       else if (left < 2) {
         v[c] = -d[c];
@@ -144,7 +145,7 @@ export const animatorOf = (first, carrier) => {
   // Whether a transition may advance with a clip whose channels follow no others, before its last frame and past no frame where the cubics are solved.
   const carry = (frames) => {
     const { channels: moving, frame, state } = track.player;
-    if (left <= 2 || left < frames || frame + frames + 1 >= track.clip.frames || (frames > 1 && AGAIN.some((again) => left > again && left - frames < again))) return false;
+    if (left < 3 || left < frames || frame + frames + 1 >= track.clip.frames || (frames > 1 && AGAIN.some((again) => left > again && left - frames < again))) return false;
     if (isCarried) return true;
     if (moving.some((_, index) => state[STATE * index + LEADER] !== OWN)) return false;
     for (const c of moving) if (!(d[c] | v[c])) w[c] = k[c] = 0;
@@ -187,7 +188,8 @@ export const animatorOf = (first, carrier) => {
     place = root.place.map((channel) => big(pose[channel] ?? 0));
     leavePlace();
   };
-  const locate = () => (placement = placed(travel, place, track.seam));
+  const placedAt = (place) => placed(travel, place, track.seam);
+  const locate = () => (placement = placedAt(place));
   const stand = (at) => {
     travel = travelOf(at, place);
     locate();
@@ -286,9 +288,8 @@ export const animatorOf = (first, carrier) => {
     takeMotion(clip);
     start(track, clip, frame, speed);
     if (!isAlike(old, clip)) {
-      const shift = clamp(old.exponent - clip.exponent, -63, 63);
       convert(old, clip);
-      now = now.map((x) => (shift < 0 ? x >> big(-shift) : wide(x << big(shift))));
+      now = now.map((x) => wideShifted(x, old.exponent - clip.exponent));
     }
     // The new clip's heading stands where the old one's stood.
     root.compute(track.player.raw);
@@ -319,7 +320,7 @@ export const animatorOf = (first, carrier) => {
   compose();
   travel = travelOf(placement, place);
   return {
-    track, pose, play, hold, stand, change, mix, leavePlace,
+    track, pose, play, hold, stand, change, mix, leavePlace, leaveCarried, placedAt,
     setSpeed: (speed) => setSpeed(track, speed),
     seek: (frame) => {
       leaveCarried();
@@ -331,8 +332,28 @@ export const animatorOf = (first, carrier) => {
       events = [];
       lost = 0;
     },
+    // What tests compare.
+    get lost() {
+      return lost;
+    },
     get events() {
       return events;
+    },
+    // Lets the figure go a way of the world beside its clip's while the transition lasts. Nothing moves in this instant; the next pose that is composed brings the place after.
+    glide: (way) => {
+      const turned = rotated(headingOf(-travel.heading[0] | 0), ...way).map((x, axis) => (root.place[axis] < 0 ? 0n : x));
+      travel.origin = travel.origin.map((x, axis) => wide(x - turned[axis]));
+      turned.forEach((x, axis) => {
+        const c = root.place[axis];
+        d[c] -= Number(x);
+        solve(c, c + 1);
+      });
+    },
+    get groups() {
+      return groups;
+    },
+    get left() {
+      return left;
     },
     get place() {
       return root.place;
@@ -340,7 +361,5 @@ export const animatorOf = (first, carrier) => {
     get placement() {
       return placement;
     },
-    // What tests compare.
-    inner: () => [left, lost],
   };
 };

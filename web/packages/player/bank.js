@@ -3,6 +3,7 @@ const RIG = 1;
 const CONTENTS = 2;
 const CLIPS = 3;
 const MACHINE = 4;
+const FEET = 5;
 
 // The clips of a bank. `tools` are what the element's own script has: fields of bytes, bytes with a checksum, what opens rigs and clips, and figures.
 export function bankOf(file, tools) {
@@ -19,7 +20,7 @@ export function bankOf(file, tools) {
     while (more()) {
       const kind = u8();
       // Of those that are known here, a bank has one each at most.
-      must(!sections[kind] || !kind || kind > MACHINE);
+      must(!sections[kind] || !kind || kind > FEET);
       sections[kind] = take();
     }
     must(sections[RIG] && sections[CONTENTS] && sections[CLIPS], "ends early");
@@ -40,6 +41,7 @@ export function bankOf(file, tools) {
     names, rig, tools,
     clips: found.map(({ file }) => file),
     machine: sections[MACHINE],
+    feet: sections[FEET],
     // The clip that was asked for, or the first, and the rig.
     clip(name) {
       const clip = name === null ? found[0] : found.find((clip) => clip.name === name);
@@ -48,8 +50,8 @@ export function bankOf(file, tools) {
     },
     // Lets a player steer the bank's state machine.
     async steer(player) {
-      const [{ steer }, { keys }] = await Promise.all([import("./pantin-character.js"), file[2] === 2 ? import("./pantin-keys.js") : {}]);
-      return steer(this, player, keys);
+      const [{ steer }, { feetOf }, { keys }] = await Promise.all([import("./pantin-character.js"), sections[FEET] ? import("./pantin-feet.js") : {}, file[2] > 1 ? import("./pantin-keys.js") : {}]);
+      return steer(this, player, keys, feetOf);
     },
   };
 }

@@ -1,6 +1,6 @@
 // Channels of a pose in groups that are one rotation, one place or one scalar, and rotations in them: the firmware's animator (pantin-animator) in JavaScript, with the
 // same integers bit for bit. Its modules groups.rs, math.rs and layer.rs state each step. Integers of 64 bits are BigInts; a picture takes a few of them.
-import { PART, Q, abs, atan2, cosine, dot, eulerOf, floor, length, matrixOf, max, normalize, orderOf, set, sine, turn, turnAbout, turnByMap, turnTo, unturned } from "../decoder/turning.js";
+import { PART, Q, abs, atan2, cosine, dot, eulerOf, floor, length, matrixOf, max, min, normalize, set, sine, turn, turnAbout, turnByMap, turnTo, unturned } from "../decoder/turning.js";
 
 export const big = BigInt;
 export const FREE = 0;
@@ -17,6 +17,8 @@ const FIRST_UP = [[0, 1, 2], [1, 0, 2], [2, 0, 1]];
 
 export const clamp = (x, low, high) => (x < low ? low : x > high ? high : x);
 export const wide = (x) => big.asIntN(64, x);
+// x times 2^shift, rounded down.
+export const wideShifted = (x, shift) => (shift < 0 ? x >> big(min(-shift, 63)) : wide(x << big(min(shift, 63))));
 export const isTurn = (kind) => kind > 2 && kind < 6;
 // x times factor / 2^shift, rounded down: x is a signed number of 32 bits, the factor below 2^33, and the shift 16 or more.
 export const scaledDown = (x, factor, shift) => floor(((x >> 16) * factor + floor(((x & 65535) * factor) / 65536)) / 2 ** (shift - 16));
@@ -85,13 +87,18 @@ const placesOf = (shape, kinds) => {
   const isMap = shape === MAP;
   return kinds.filter((kind) => kind > 2).map((kind, at) => (kind > 9 ? kind - 10 + !isMap : kind > 5 ? max(0, kind - 6 - isMap) : at));
 };
-// Makes the rotation of a group's channels; false for channels that are each by themselves. `kinds` are those of the joint.
-export const turnOf = (shape, kinds, own) => {
+// The components of a map or a quaternion in their order. `kinds` are those of the joint.
+export const partsOf = (shape, kinds, own) => {
   const parts = [0, 0, 0, 0];
+  placesOf(shape, kinds).forEach((place, index) => index < own.length && (parts[place] = own[index]));
+  return parts;
+};
+// Makes the rotation of a group's channels; false for channels that are each by themselves.
+export const turnOf = (shape, kinds, own) => {
   unturned();
   if (shape === EULER) kinds.filter(isTurn).forEach((kind, index) => index < 3 && turnAbout(kind - 3, own[index]));
   else if (shape) {
-    placesOf(shape, kinds).forEach((place, index) => index < own.length && (parts[place] = own[index]));
+    const parts = partsOf(shape, kinds, own);
     if (shape === MAP) turnByMap(parts[0], parts[1], parts[2]);
     else {
       set(...parts);
@@ -114,11 +121,11 @@ const mapOf = () => {
   return vector.map((x) => (size ? clamp(Number((big(w < 0 ? -x : x) * angle) / size), -MOST, MOST) : 0));
 };
 // What the rotation is in a group's channels; those that it cannot be written to stay.
-const writtenTo = (shape, kinds, own) => {
+export const writtenTo = (shape, kinds, own) => {
   if (shape === EULER) {
     normalize(Q);
     const letters = kinds.filter(isTurn).map((kind) => "XYZ"[kind - 3]).slice(0, 3).join("");
-    return eulerOf(orderOf(letters), []);
+    return eulerOf(letters, []);
   }
   const parts = shape === MAP ? mapOf() : [...Q];
   const places = placesOf(shape, kinds);

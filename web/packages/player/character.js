@@ -1,9 +1,9 @@
 // What <pantin-player> loads for a bank with a state machine: what steers it, and its figure where that stands.
-import { min, round } from "../decoder/turning.js";
-import { clamp, wide } from "./channels.js";
+import { Q, normalize, round } from "../decoder/turning.js";
+import { clamp, headingOf, nearest, partsOf, rotated, weighted, wide, wideShifted, writtenTo } from "./channels.js";
 import { isAlike } from "./animator.js";
 import { characterOf } from "./machine.js";
-import { tableOf } from "./machine-table.js";
+import { must, tableOf } from "./machine-table.js";
 
 const FAULT = "the bank contradicts itself";
 // 71 minutes.
@@ -14,14 +14,16 @@ const FAR = 2n ** 30n;
 const TURNS = 5;
 const SHIFT = 15;
 
-// The character of a bank, whose key clips need the `keys` of keys.js. Throws an Error if its state machine, or a clip of it, is no good.
-export function opened({ clips, machine, rig, tools: [, checked, , openRawClip] }, keys) {
+// The character of a bank, whose key clips need the `keys` of keys.js, and whose feet, if it has a table of them, `feetOf` of feet.js. Throws an Error if its state machine, its
+// table of feet, or a clip of it, is no good.
+export function opened({ clips, feet, machine, rig, tools: [fieldsOf, checked, , openRawClip, figureOf, maths] }, keys, feetOf) {
   const poseOf = (_, __, state, channels) => ({ state, channels });
-  return characterOf(rig, tableOf(checked(machine), clips.length), (index) => {
+  const open = (index) => {
     const clip = openRawClip(clips[index], rig, false, { poseOf, keys });
     if (clip.rig !== rig) throw new Error("pantin: out of bounds");
     return clip;
-  });
+  };
+  return characterOf(rig, tableOf(fieldsOf, checked(machine), clips.length), open, feet && ((animator) => feetOf(fieldsOf(checked(feet)), clips.length, animator, figureOf, maths, [Q, clamp, headingOf, must, nearest, normalize, partsOf, rotated, weighted, wide, wideShifted, writtenTo])));
 }
 
 // Where a figure stands, for `place` of figure.js. Of the figure's rotations, the last is the view's.
@@ -32,7 +34,7 @@ function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {
     turnAbout(turn, 0, axis, angle);
     return imageOf(turn, v);
   };
-  place.forEach((x, index) => (offset[(axis + 1 + index) % 3] = Number(clamp(shift < 0 ? wide(x << BigInt(-shift)) : x >> BigInt(min(shift, 63)), -FAR, FAR))));
+  place.forEach((x, index) => (offset[(axis + 1 + index) % 3] = Number(clamp(wideShifted(x, -shift), -FAR, FAR))));
   return (v, isBack) => {
     if (!isBack) return turned(heading, v).map((x, index) => (x + offset[index]) | 0);
     turnAbout(turns, turns.length - 9, axis, heading);
@@ -41,11 +43,11 @@ function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {
 }
 
 // Lets a player steer the state machine of a bank: it gets its names and its events.
-export function steer(bank, player, keys) {
+export function steer(bank, player, keys, feetOf) {
   const { rig, tools: [, , , , figureOf, maths] } = bank;
   let character;
   try {
-    character = opened(bank, keys);
+    character = opened(bank, keys, feetOf);
   } catch {
     throw new Error(FAULT);
   }

@@ -103,7 +103,7 @@ const turnByUnit = (turns, at, w, x, y, z) => {
   columns.forEach((value, index) => (turns[at + index] = value));
 };
 const turnByExponential = (turns, at, map) => {
-  const square = map.reduce((sum, x) => sum + (x >> 16) * (x >> 16) + (((x >> 16) * ((x >> 4) & 0xfff)) >> 11), 0);
+  const square = map.reduce((sum, x) => Math.max(0, sum + (x >> 16) * (x >> 16) + (((x >> 16) * ((x >> 4) & 0xfff)) >> 11)), 0);
   const entry = HALF_ANGLES[square >>> 24];
   const next = HALF_ANGLES[(square >>> 24) + 1];
   const [w, scale] = entry.map((from, index) => from + (((next[index] - from) * ((square >>> 12) & 0xfff)) >> 12));
@@ -115,7 +115,7 @@ const turnByQuaternion = (turns, at, q) => {
   let shift = bitLength(largest) - 15;
   const all = () => q.map((x) => shifted(x, shift));
   if (squareOf(all()) < 2 ** 30) shift--;
-  const above = squareOf(all()) - 2 ** 30;
+  const above = Math.min(3 * 2 ** 30 - 1, squareOf(all()) - 2 ** 30);
   const root = ROOTS[above >>> 23];
   const inverse = root + (((ROOTS[(above >>> 23) + 1] - root) * ((above >>> 8) & 0x7fff)) >> 15);
   turnByUnit(turns, at, ...all().map((x) => scaledBy(x, inverse)));

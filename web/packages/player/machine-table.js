@@ -13,61 +13,40 @@ export const NOTHING = 255;
 // A layer's fade is in units of this many microseconds.
 const FADE_UNIT = 15625;
 
-const must = (holds) => {
+export const must = (holds) => {
   if (!holds) throw new Error("pantin: bad state machine");
 };
-const textOf = (bytes) => new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
+// Nothing for bytes that are no text.
+const textOf = (bytes) => {
+  try {
+    return new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
+  } catch {}
+};
 // Texts as letters that are bytes.
 const lettersOf = (bytes) => String.fromCharCode(...bytes);
 
 // The rows of a table whose checksum is right, for a bank with a number of clips: every row that another names is there.
-export const tableOf = (bytes, clips) => {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
-  must(bytes.length > 7);
-  const [version, states, transitions, parameters, inputs, first, any, layers] = bytes;
-  let at = 8;
-  const rows = (count, length, of) => Array.from({ length: count }, () => {
-    must(at + length <= bytes.length);
-    at += length;
-    return of((offset) => bytes[at - length + offset], (offset) => view.getInt16(at - length + offset, true));
-  });
+export const tableOf = (fieldsOf, bytes, clips) => {
+  const { u8, i8, take, more } = fieldsOf(bytes);
+  const i16 = () => u8() | (i8() << 8);
+  const rows = (length, of) => Array.from({ length }, of);
+  const [version, states, transitions, parameters, inputs, first, any, layers] = take(8);
   must(version === 1 && states < 65 && parameters < 9 && inputs < 33 && layers < 5 && first < states);
   const table = {
     first, any,
-    states: rows(states, 8, (byte, number) => ({ clip: byte(0), other: byte(1), by: byte(2), flags: byte(3), speed: 256 * number(4), from: byte(6), count: byte(7) })),
-    transitions: rows(transitions, 8, (byte, number) => ({ cause: byte(0), argument: byte(1), threshold: number(2), to: byte(4), kind: byte(5), frames: byte(6), start: byte(7) })),
-    parameters: rows(parameters, 6, (_, number) => [number(0), number(2), number(4)]),
-    layers: rows(layers, 12, (byte) => ({ clip: byte(0), input: byte(1), fade: byte(2) * FADE_UNIT, flags: byte(3), states: [4, 5, 6, 7, 8, 9, 10, 11].map(byte) })),
-  };
-  const takeNames = (count) => {
-    const found = [];
-    while (found.length < count) {
-      must(at < bytes.length);
-      found.push(bytes.subarray(at + 1, (at += 1 + bytes[at])));
-    }
-    must(at <= bytes.length);
-    return found;
+    states: rows(states, () => ({ clip: u8(), other: u8(), by: u8(), flags: u8(), speed: 256 * i16(), from: u8(), count: u8() })),
+    transitions: rows(transitions, () => ({ cause: u8(), argument: u8(), threshold: i16(), to: u8(), kind: u8(), frames: u8(), start: u8() })),
+    parameters: rows(parameters, () => [i16(), i16(), i16()]),
+    layers: rows(layers, () => ({ clip: u8(), input: u8(), fade: u8() * FADE_UNIT, flags: u8(), states: take(8) })),
   };
   // A name that is no text is empty, but a layer's has to be one.
-  const texts = (count) => takeNames(count).map((name) => {
-    try {
-      return textOf(name);
-    } catch {
-      return "";
-    }
+  const found = [states, parameters, inputs].map((count) => rows(count, () => textOf(take(u8())) ?? ""));
+  table.layers.forEach((layer) => {
+    const name = take(u8());
+    must(textOf(name) !== undefined);
+    layer.patterns = lettersOf(name).split("\n");
   });
-  const found = [texts(states), texts(parameters), texts(inputs)];
-  takeNames(layers).forEach((name, index) => {
-    let isText = true;
-    try {
-      textOf(name);
-    } catch {
-      isText = false;
-    }
-    must(isText);
-    table.layers[index].patterns = lettersOf(name).split("\n");
-  });
-  must(at === bytes.length);
+  must(!more());
   must(table.parameters.every(([low, high, value]) => low < high && value >= low && value <= high));
   must(table.layers.every(({ clip, input, flags }) => clip < clips && input < inputs && !flags));
   const leads = ({ from, count }) => {

@@ -1,4 +1,4 @@
-// The state machine of a bank, and what it plays: an animator, the second clip of a blend, and layers. The firmware's machine.rs and character.rs state each step. Feet are not held.
+// The state machine of a bank, and what it plays: an animator, the second clip of a blend, and layers. The firmware's machine.rs and character.rs state each step. Feet are of a module of their own, feet.js.
 import { floor, max, min } from "../decoder/turning.js";
 import { animatorOf } from "./animator.js";
 import { WHOLE, big, clamp, isTurn } from "./channels.js";
@@ -41,9 +41,9 @@ const carrierOf = ({ joints }, players) => {
 
 /**
  * The character of a bank: `open` opens its clips by their index, and `table` is that of its state machine. Throws an Error for clips that are damaged or lack what the machine needs.
- * `update` does so for a clip that a state or a layer begins to play; the old state goes on then.
+ * `update` does so for a clip that a state or a layer begins to play; the old state goes on then. `lendFeet` makes what holds the feet of an animator, if the bank has a table of them.
  */
-export const characterOf = (rig, table, open) => {
+export const characterOf = (rig, table, open, lendFeet) => {
   const clips = [];
   const clipOf = (index) => (clips[index] ??= open(index));
   const { states, parameters } = table;
@@ -55,6 +55,8 @@ export const characterOf = (rig, table, open) => {
   let seen = 0;
   let entered = false;
   let isBlending = false;
+  // The index of the transition that waits for a matching foot.
+  let waiting = Infinity;
 
   function* players() {
     for (const row of states) yield clipOf(row.clip).play();
@@ -71,6 +73,7 @@ export const characterOf = (rig, table, open) => {
     animator.seek(frame);
     animator.stand([[0n, 0n], 0]);
   }
+  const feet = lendFeet?.(animator);
   const second = start({}, initial);
   const layers = table.layers.map((layer) => {
     const clip = clipOf(layer.clip);
@@ -116,27 +119,35 @@ export const characterOf = (rig, table, open) => {
     : cause === RELEASED ? up & bit(argument)
     : cause === EVENT ? animator.events.slice(heard).some(({ id }) => id === argument)
     : cause === ABOVE ? values[argument] > threshold : values[argument] < threshold;
-  const make = ({ to, kind, frames, start: first }) => {
+  const make = ({ to, kind, frames, start: first }, at) => {
     const { clip: index, speed } = states[to];
     const clip = clipOf(index);
     // Without footsteps it begins at its first frame.
-    const frame = first === NOTHING ? max(0, floor(inStep(track, clip, 0) / 65536)) : first;
+    const frame = at ?? (first === NOTHING ? max(0, floor(inStep(track, clip, 0) / 65536)) : first);
     animator.change(clip, begun(frame, clip, speed), speed, kind, frames);
     state = to;
+    waiting = Infinity;
     isBlending = false;
     entered = true;
   };
   // Takes the first transition whose condition holds, then those of the states that are entered: all in one instant, so that the display rate does not matter. None leads back, but in its
-  // first state a machine may start the same state again. Returns whether there was one.
+  // first state a machine may start the same state again. One that waits is made unless one before it happens, and at the end of its clip. Returns whether there was one.
   const enter = (inputs, then) => {
     const been = new Set();
     for (let count = 0; count < CHANGES; count++) {
       been.add(state);
       const own = state;
       const isOpen = (transition) => !(been.size > 1 && been.has(transition.to)) && happens(transition, inputs);
-      const found = table.anywhere.find((transition) => transition.to !== own && isOpen(transition)) ?? table.ways[own].find(isOpen);
-      if (!found) return count > 0;
-      make(found);
+      const isDue = waiting < Infinity && track.ended;
+      let index = table.transitions.indexOf(table.anywhere.find((transition) => transition.to !== own && isOpen(transition)) ?? table.ways[own].find(isOpen));
+      // Without its sign, -1 is no index: nothing waits before it.
+      if (index >>> 0 >= waiting) index = isDue ? waiting : -1;
+      if (index < 0) return count > 0;
+      if (!isDue && feet?.next(index)) {
+        waiting = index;
+        return count > 0;
+      }
+      make(table.transitions[index]);
       inputs = [...then, animator.events.length];
     }
     return true;
@@ -146,8 +157,13 @@ export const characterOf = (rig, table, open) => {
     let heard = 0;
     for (let count = 0; count < CHANGES; count++) {
       heard = animator.events.length;
-      left = animator.play(left);
-      if (!left || !enter([...before, heard], before)) break;
+      const entry = feet?.next(waiting);
+      const whole = entry?.[1] < left ? entry[1] : left;
+      const isEntry = whole < left;
+      left += animator.play(whole) - whole;
+      if (!left) break;
+      if (isEntry) make(table.transitions[waiting], entry[0]);
+      else if (!enter([...before, heard], before)) break;
       blend();
     }
     animator.hold(left);
@@ -202,7 +218,7 @@ export const characterOf = (rig, table, open) => {
 
   const hold = (input, isDown) => (held = isDown ? held | bit(input) : held & ~bit(input));
   return {
-    animator, hold, initial, parameters,
+    animator, initial, hold, parameters,
     names: table.names,
     fire: (input) => (fired |= bit(input)),
     // Within its range; what the table lacks does nothing.
@@ -227,6 +243,10 @@ export const characterOf = (rig, table, open) => {
         heldBefore = held;
       }
       layers.forEach((layer) => updateLayer(layer, elapsed));
+      // Of two clips that are blended the figure has the feet of the one that there is more of.
+      const { clip, other, by } = row();
+      const [own, { player }] = isBlending && weightOf(by) > WHOLE / 2 ? [other, second] : [clip, track];
+      feet?.hold(own, player.frame, entered, elapsed);
     },
     // Some poses of the states' clips, with the root at the origin.
     *poses() {

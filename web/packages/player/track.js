@@ -1,8 +1,8 @@
 // A clip at play by time: any display rate, speeds of -4 to 4, without drift. The firmware's track.rs and root.rs state each step.
 //
 // A track has a clip, its player, and the values `first` with which its moving channels begin; `rest` is the time after the frame in 2^-16 ns.
-import { abs, floor, imul, min, round } from "../decoder/turning.js";
-import { WHOLE, big, clamp, headingOf, nearest, rotated, turnOf, turnedBy, weighted, wide, yawOf } from "./channels.js";
+import { abs, floor, imul, max, round } from "../decoder/turning.js";
+import { WHOLE, big, clamp, headingOf, nearest, rotated, turnOf, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
 
 // Speed 1.
 export const NORMAL = 65536;
@@ -22,9 +22,9 @@ const NEXT = 1;
 const FIRST = 2;
 
 const quotient = (a, b) => a / b - big(a % b < 0n);
-const size = (x) => (x < 0n ? -x : x);
+const size = (x) => (x < 0 ? -x : x);
 // 5 cm in the unit of a clip's positions.
-const nearOf = ({ rig, exponent }, most) => (exponent < 0 ? NEAR << big(min(-exponent, most)) : NEAR >> big(exponent)) / big(round(rig.cmPerUnit * 1e6));
+const nearOf = ({ rig, exponent }, most) => wideShifted(NEAR, -max(exponent, -most)) / big(round(rig.cmPerUnit * 1e6));
 
 export const setSpeed = (track, speed) => {
   track.speed = clamp(speed, -4 * NORMAL, 4 * NORMAL);

@@ -3,14 +3,14 @@
 use crate::facts::{Facts, Trouble};
 use core::mem::MaybeUninit;
 use pantin::{ChannelState, Clip, Pose, Rig};
-use pantin_animator::machine::LAYERS;
-use pantin_animator::{Character, Error, Group, LayerMemory, Memory, Offset, first_clip, visit_poses};
+use pantin_animator::machine::{LAYERS, TableError};
+use pantin_animator::{Character, Error, Feet, Group, LayerMemory, Memory, Offset, first_clip, visit_poses};
 use pantin_figure::Stand;
 
 /// Channels of the rig, at most.
 const CHANNELS: usize = 512;
 
-/// What a character is played with. All but the groups is made of integers: any bits are values.
+/// What a character is played with. All but groups and feet is made of integers: any bits are values.
 pub struct Buffers {
     states: [ChannelState; CHANNELS],
     values: [i32; CHANNELS],
@@ -20,6 +20,7 @@ pub struct Buffers {
     second: TrackMemory,
     layers: [Layer; LAYERS],
     visited: Layer,
+    feet: MaybeUninit<Feet<'static>>,
 }
 
 struct TrackMemory {
@@ -55,7 +56,7 @@ impl From<Error> for Trouble {
 impl Steered {
     /// Starts the state machine of a bank.
     pub fn new(bank: &'static [u8], buffers: &'static mut Buffers) -> Result<Steered, Trouble> {
-        let Buffers { states, values, offsets, pose, groups, second, layers, visited } = buffers;
+        let Buffers { states, values, offsets, pose, groups, second, layers, visited, feet } = buffers;
         groups.fill(MaybeUninit::new(Group::NONE));
         // SAFETY: all of them were written, and a wrapped value lies as its own.
         let groups = unsafe { &mut *(&raw mut *groups).cast::<[Group; CHANNELS]>() };
@@ -64,6 +65,11 @@ impl Steered {
         for Layer { track, sampled, words } in layers.iter_mut().take(character.table().layers()) {
             let TrackMemory { states, values } = track;
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
+        }
+        match character.lend_feet(feet.write(Feet::new())) {
+            // A bank without feet.
+            Ok(()) | Err(Error::Machine(TableError::Missing)) => {}
+            Err(error) => return Err(error.into()),
         }
         Ok(Steered { character, bank, visited, first: first_clip(bank)? })
     }

@@ -51,8 +51,8 @@ pub const OTHERS: [&str; 9] = [
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.js"];
-/// What it loads too for a bank, and for one with a state machine.
-pub const CHARACTER: [&str; 2] = ["pantin-bank.js", "pantin-character.js"];
+/// What it loads too for a bank, for one with a state machine, and for one with a table of feet.
+pub const CHARACTER: [&str; 3] = ["pantin-bank.js", "pantin-character.js", "pantin-feet.js"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
@@ -86,6 +86,7 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         let page = inline::page(out, &bytes, &name.to_string_lossy()).with_context(|| clip.display().to_string())?;
         write(&out.join(name).with_extension("html"), page.as_bytes())?;
     }
+    tools::compress(&out.join("clips"))?;
     tools::compress(out)
 }
 

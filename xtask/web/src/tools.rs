@@ -75,13 +75,14 @@ fn with_let(script: &str) -> String {
     out
 }
 
-/// Writes what a server may send in place of files of the site: each with brotli and gzip, where node is there.
+/// Writes what a server may send in place of files of a folder: each with brotli and gzip, where node is there. Clips are left out: they play while they arrive. A bank is shown
+/// once it is whole, and its tables become much smaller.
 pub fn compress(folder: &Path) -> Result<()> {
     const SCRIPT: &str = r#"
         import { readFileSync, readdirSync, writeFileSync } from "node:fs";
         import { brotliCompressSync, constants, gzipSync } from "node:zlib";
         const [, folder] = process.argv;
-        for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|wasm)$/.test(name))) {
+        for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|ptb|wasm)$/.test(name))) {
           const bytes = readFileSync(`${folder}/${name}`);
           // The converter takes seconds at the best quality.
           const [quality, level] = bytes.length < 1 << 19 ? [11, 9] : [9, 6];

@@ -1,13 +1,11 @@
 //! The animator in C: poses, placements and events of the crate pantin-animator, at every frame.
 
-mod feet;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use harness::animator::{self as reference, Lent, Sequence};
-use harness::{paths, vectors};
+use harness::{feet, paths, vectors};
 use pantin::Clip;
 use pantin_animator::machine::Table;
 use tempfile::TempDir;

@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result};
-use harness::animator::Sequence;
-use harness::{build, paths};
+use anyhow::{Context, Result, ensure};
 use pantin::Bank;
 use pantin_animator::machine::{FEET_SECTION, FEET_VERSION, Table};
 use pantin_convert::bank;
 use tempfile::TempDir;
 
-use super::super::output;
+use crate::animator::Sequence;
+use crate::{build, paths};
 
 /// Banks with feet, each with a name.
 pub struct FeetBank {
+    /// How its motions are coded, or where they come from.
     pub name: String,
+    /// The bank.
     pub bytes: Vec<u8>,
     /// Whether all clips have one form, without which layers and blends do not play.
     pub same_form: bool,
@@ -103,12 +104,19 @@ pub fn banks(folder: &TempDir) -> Result<Vec<FeetBank>> {
     Ok(banks)
 }
 
+/// Runs the host tool.
+fn run(mut tool: Command) -> Result<()> {
+    let output = tool.output().context("cannot start the host tool")?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Ok(())
+}
+
 /// Converts motions to a bank.
 fn convert(folder: &TempDir, motions: &[&Path], options: &[&str]) -> Result<PathBuf> {
     let clips = folder.path().join("feet-clips.ptb");
     let mut convert = Command::new(build::host_tool()?);
     convert.args(["convert", "--quiet"]).args(options).args(motions).arg("-o").arg(&clips);
-    output(convert)?;
+    run(convert)?;
     Ok(clips)
 }
 
@@ -118,7 +126,7 @@ fn machine(folder: &TempDir, clips: &Path, text: &str) -> Result<Vec<u8>> {
     std::fs::write(&source, text)?;
     let mut machine = Command::new(build::host_tool()?);
     machine.arg("machine").arg(&source).arg("--bank").arg(clips).arg("-o").arg(&out);
-    output(machine)?;
+    run(machine)?;
     Ok(std::fs::read(out)?)
 }
 

@@ -1,0 +1,390 @@
+// What <pantin-player> loads for a bank with a table of feet, which stay where they are put: in states, and through transitions, which wait for a matching foot. The firmware's
+// module feet, with chain.rs, two_bone.rs and ease.rs and the vectors of pantin-math, states each step. Places in the world are BigInts, as in animator.js.
+const { PI, abs, asin, clz32, floor, max, min, round, sin, sqrt, trunc } = Math;
+const big = BigInt;
+const ONE = 1 << 15;
+const HALF = ONE / 2;
+const Q22 = 2 ** 22;
+const MOST = 2 ** 31 - 1;
+// The shape of a group that is an exponential map; of those below, angles one by one.
+const MAP = 2;
+// Where the inner parts of a figure have its rotations, and what places its joints.
+const TURNS = 5;
+const PLACE = 7;
+// Microseconds in which a foot that is let go comes back to its clip.
+const RELEASE = 200000;
+const ORIGIN = [0, 0, 0];
+// Rotations are nine numbers, as in figure.js.
+const UNTURNED = [ONE, 0, 0, 0, ONE, 0, 0, 0, ONE];
+
+const size = (x) => (x < 0 ? -x : x);
+const farther = ([a, b]) => (size(a) > size(b) ? size(a) : size(b));
+const sum = (a, b) => a.map((x, axis) => (x + b[axis]) | 0);
+const difference = (a, b) => a.map((x, axis) => (x - b[axis]) | 0);
+const squareOf = (vector) => vector.reduce((sum, x) => sum + x * x, 0);
+const anyBit = (vector) => vector.reduce((all, x) => all | abs(x), 0);
+const cycled = (vector, by) => vector.map((_, axis) => vector[(axis + by) % 3]);
+const crossed = (a, b) => a.map((_, axis) => (a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3] + HALF) >> 15);
+const transposed = (turn) => turn.map((_, index) => turn[(index * 3) % 8 || index]);
+
+// Entries of the firmware's tables.
+const rootAt = (index) => round(Q22 / sqrt(index / 128));
+const circleAt = (index) => round(sin((index * PI) / 64) * Q22) >> 7;
+// The direction of a vector in Q15, and its length; neither for a vector without length.
+const directionOf = (vector) => {
+  const largest = anyBit(vector);
+  if (!largest) return [];
+  const up = max(clz32(largest), 1) - 1;
+  let down = 16;
+  const parts = () => vector.map((x) => (x << up) >> down);
+  down -= squareOf(parts()) < 2 ** 30;
+  const square = min(squareOf(parts()), 2 ** 32 - 1);
+  const index = square >>> 23;
+  const root = rootAt(index);
+  const inverse = (root + (((rootAt(index + 1) - root) * ((square >>> 8) & 0x7fff)) >> 15)) >> 7;
+  return [parts().map((x) => (x * inverse + HALF) >> 15), floor((((((square >>> 15) + 1) >> 1) * inverse) >> 14) * 2 ** (down - up))];
+};
+// The angle of a unit vector.
+const angleOf = (y, x) => {
+  const across = abs(y);
+  const along = abs(x);
+  const small = min(across, along);
+  const index = min(16, round((asin((2 * (small >> 8) + 1) / 256) * 64) / PI));
+  let angle = index * 2 ** 25 + ((small * circleAt(index + 32) - max(across, along) * circleAt(index) + HALF) >> 15) * 20861;
+  if (across > along) angle = 2 ** 30 - angle;
+  if (x < 0) angle = -(2 ** 31) - angle;
+  return (y < 0 ? -angle : angle) | 0;
+};
+
+// A part of the time in which a foot comes back, in 2^-15.
+const partOfRelease = (since) => floor((since * ONE) / RELEASE);
+
+/**
+ * The feet of the fields of a table whose checksum is right, for an animator of a bank with a number of clips. `maths` and `figureOf` are those of figure.js; the other tools are those of
+ * character.js. Throws an Error for a table that contradicts itself or the rig. `next` has the frame of the new clip at which a transition that waits begins, and the time in ns until
+ * then; `hold` corrects the pose of an update.
+ */
+export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout, sinCosOf, imageOf], [Q, clamp, headingOf, must, nearest, normalize, partsOf, rotated, weighted, wide, wideShifted, writtenTo]) => {
+  const { pose, track } = animator;
+  const { rig } = track.clip;
+  const up = rig.up.findIndex(Boolean);
+  const upward = rig.up[up];
+  const narrow = (x) => clamp(Number(x), -MOST, MOST);
+  // x / 2^shift, cut off at the range.
+  const shifted = (x, shift) => (shift < 0 ? narrow(x * 2 ** min(-shift, 31)) : x >> min(shift, 31));
+  const added = (a, b) => a.map((x, axis) => wide(x + b[axis]));
+  const apart = (a, b) => a.map((x, axis) => wide(x - b[axis]));
+  // The form of the clip that was entered last: its groups, the exponent of its unit, and the shift of its places to figure units.
+  let groups, shift;
+  let { exponent } = track.clip;
+  // The shift of the rig's offsets to figure units.
+  const down = 18 - clz32(anyBit(rig.joints.flatMap(({ rest }) => rest)));
+
+  // ---- The table
+  const u16 = () => u8() | (u8() << 8);
+  const rows = (length, of) => Array.from({ length }, of);
+  const [version, count, own] = take(4);
+  const counts = rows(2, u16);
+  must(version === 1 && own === clips && (count === 1 || count === 2));
+  // The ankle, how many points there are, a reserved byte, and the points.
+  const named = rows(count, () => [u16(), u8(), u8(), u16(), u16(), u16(), u16()]);
+  const ends = rows(clips, u16);
+  // A foot, a point of it that is on the ground, and frames; a transition, a reserved byte, and frames of the old and the new clip.
+  const [contacts, entries] = counts.map((count) => rows(count, () => [u8(), u8(), u16(), u16()]));
+  must(!more() && ends.at(-1) === contacts.length && ends.every((end, clip) => end >= (ends[clip - 1] ?? 0)));
+  contacts.forEach(([foot, point, from, to]) => must(foot < count && point <= named[foot][1] && from < to));
+
+  // ---- Joints
+  // What a figure of one joint makes of a map or a quaternion.
+  const turnOf = [[10, 11, 12], [6, 7, 8, 9]].map((kinds) => {
+    const joints = [{ name: "", parent: -1, kinds, first: 0, rest: ORIGIN }];
+    const inner = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
+    return (parts) => {
+      inner[PLACE](parts, ORIGIN);
+      return inner[TURNS];
+    };
+  });
+  const then = (turn, other) => [0, 3, 6].flatMap((column) => imageOf(turn, other.slice(column, column + 3)));
+  const columns = (a, b) => [...a, ...b, ...crossed(a, b)];
+  const eulerOf = (turn, i, j, k) => {
+    const at = (row, column) => turn[3 * column + row];
+    const sign = (i + 1) % 3 === j ? 1 : -1;
+    const [aim = ORIGIN] = directionOf([at(i, i), -sign * at(i, j), 0]);
+    const third = angleOf(aim[1], aim[0]);
+    const [sine, cosine] = sinCosOf(third);
+    const image = (row) => (sign * at(row, i) * sine + at(row, j) * cosine) >> 15;
+    return [angleOf(sign * image(k), image(j)), angleOf(sign * at(i, k), (at(i, i) * cosine - sign * at(i, j) * sine) >> 15), third];
+  };
+  // Makes a rotation the decoder's quaternion, by its largest component.
+  const takeTurn = (turn) => {
+    const trace = turn[0] + turn[4] + turn[8];
+    const first = [ONE + trace, turn[5] - turn[7], turn[6] - turn[2], turn[1] - turn[3]];
+    // Four times the product of two components.
+    const product = (a, b) => (a && b ? turn[3 * a + b - 4] + turn[3 * b + a - 4] + (a === b && ONE - trace) : first[a + b]);
+    const best = first.reduce((best, _, own) => (product(own, own) > product(best, best) ? own : best), 0);
+    Q.set(first.map((_, own) => product(own, best) * 4096));
+    normalize(Q);
+  };
+  const offsetOf = (index) => rig.joints[index].rest.map((x) => shifted(x, down));
+  // The shape of what turns a joint, its axes, and its channels in a pose.
+  const turningOf = (index, pose) => {
+    const { kinds, first } = rig.joints[index];
+    const turning = kinds.filter((kind) => kind > 2);
+    const begin = first + kinds.indexOf(turning[0]);
+    const [shape] = groups.find(([, from, , own]) => own === index && from === begin) ?? [0];
+    return [shape, turning.map((kind) => (kind - (kind > 6)) % 3), pose.subarray(begin, begin + turning.length)];
+  };
+  // Where a joint is, and how what hangs on it is turned. `known` are those that are known of the pose.
+  const jointAt = (index, pose, known) => (index < 0 ? [ORIGIN, UNTURNED] : (known[index] ??= follow(index, pose, known)));
+  const follow = (index, pose, known) => {
+    const { kinds, first, parent } = rig.joints[index];
+    const [place, turn] = jointAt(parent, pose, known);
+    const [shape, axes, own] = turningOf(index, pose);
+    const turned = shape < MAP ? [...turn] : then(turn, turnOf[shape - MAP](partsOf(shape, kinds, own)));
+    if (shape < MAP) axes.slice(0, 3).forEach((axis, at) => turnAbout(turned, 0, axis, own[at]));
+    return [sum(place, imageOf(turn, offsetOf(index).map((x, axis) => (kinds.lastIndexOf(axis) < 0 ? x : shifted(pose[first + kinds.lastIndexOf(axis)], shift))))), turned];
+  };
+  // Writes a joint's rotation to its channels. One with fewer than three angles takes those that it has.
+  const write = (index, parent, turn) => {
+    const [shape, axes, own] = turningOf(index, pose);
+    const local = then(transposed(parent), turn);
+    if (shape < MAP) {
+      const [i, j = (i + 1) % 3, k = (6 - i - j) % 3] = axes;
+      own.set(nearest(shape, eulerOf(local, i, j, k), own).slice(0, axes.length));
+    } else {
+      takeTurn(local);
+      own.set(writtenTo(shape, rig.joints[index].kinds, own));
+    }
+  };
+  // The indices of the joints down to one.
+  const chainOf = (index) => (rig.joints[index] ? [...chainOf(rig.joints[index].parent), index] : []);
+
+  // ---- A foot
+  const footOf = ([ankle, count, reserved, ...others]) => {
+    // The ankle and the foot's points, and the joint above the leg, and hip, knee and ankle.
+    const joints = [ankle, ...others.slice(0, count)];
+    const chain = chainOf(ankle);
+    const leg = [-1, ...chain].slice(-4);
+    // A leg has three joints, and 12 lead to an ankle at most.
+    must(count < 5 && !reserved && chain.length > 2 && chain.length < 13);
+    joints.forEach((joint, index) => must(!index || joints.slice(0, index).includes(rig.joints[joint]?.parent)));
+    // Lengths of thigh and shin, and the distances of hip and ankle that the knee allows: it bends by 150 degrees at most, and by 1 degree at least.
+    const [upper, lower] = leg.slice(2).map((index) => directionOf(offsetOf(index))[1]);
+    must(upper && lower);
+    const [closest, farthest] = [1789569707, 11930465].map((bend) => floor(sqrt(max(0, upper ** 2 + lower ** 2 + floor((2 * upper * lower * sinCosOf(bend)[1]) / ONE)))));
+    // The axis of the knee; the point that is held, and where it stays; the one that was on the ground before, and where it was; -1 for none.
+    let hinge;
+    let point = -1;
+    let before = -1;
+    let anchor = [0n, 0n, 0n];
+    let last = anchor;
+    // Whether the height stays, too; whether it is not held before it has come back to its clip; and how high it is lifted on its way.
+    let isLevel, steps;
+    let lift = 0;
+    // For two horizontal axes and the height, a distance from the clip that dies out, the one that it would go in the whole time at its velocity, and the time since it was let go.
+    let eases = [[0, 0, RELEASE], [0, 0, RELEASE], [0, 0, RELEASE]];
+
+    const length = () => shifted(upper + lower, -shift);
+    const legIn = (known = []) => leg.map((index) => jointAt(index, pose, known));
+    const pointIn = (pose, point, known) => jointAt(joints[point], pose, known)[0].map((x) => shifted(x, -shift));
+    const release = (again, rise) => {
+      point = -1;
+      steps = again;
+      lift = rise;
+      eases = eases.map(([d, v, since], axis) => [d, v, axis < 2 || isLevel ? 0 : since]);
+      isLevel = false;
+    };
+    const left = () => {
+      const [a, b, height] = eases.map(([d, v, since]) => {
+        const part = partOfRelease(since);
+        const rest = ONE - part;
+        const square = (rest * rest) >> 15;
+        return narrow(weighted(d, (square * (ONE + 2 * part)) >> 15) + weighted(v, (square * part) >> 15));
+      });
+      // 4 t (1 - t), in 2^-13 of a lift: nothing of a foot that is held, or where the clip has it.
+      const part = partOfRelease(eases[0][2]);
+      return [a, b, (height + floor((lift * ((part * (ONE - part)) >> 15)) / 8192)) | 0];
+    };
+    // Where it would be held at another point.
+    const anchorAt = (world, contact) => added(anchor, apart(world(contact), world(point)));
+    // Lets time pass; returns the leg and where its ankle is to be, if that is not where the clip has it.
+    const update = ([toWorld, toPose], contact, isCalm, elapsed) => {
+      eases = eases.map(([d, v, since]) => [d, v, min(since + elapsed, RELEASE)]);
+      const known = [];
+      const world = (point) => toWorld(pointIn(pose, point, known));
+      const withLeft = () => added(world(contact), left().map(big));
+      if (contact < 0) {
+        if (point >= 0) release(false, 0);
+      } else if (point >= 0) {
+        anchor = anchorAt(world, contact);
+        point = contact;
+      } else {
+        const place = withLeft();
+        // Half of the leg in a second.
+        const rests = before === contact && apart(place, last).every((x) => size(x) <= (big(length()) * big(elapsed)) / 2000000n);
+        if (before < 0 || (steps ? isCalm && eases[0][2] === RELEASE : isCalm || rests)) {
+          eases = eases.map((ease, axis) => (axis < 2 ? [left()[axis], 0, 0] : ease));
+          point = contact;
+          anchor = place;
+          isLevel = false;
+        }
+      }
+      if (point >= 0) {
+        const way = apart(anchor, world(point));
+        eases = eases.map((ease, axis) => {
+          const d = narrow(way[axis]);
+          return axis < 2 || isLevel ? [d, elapsed ? narrow(trunc((((d - ease[0]) | 0) * RELEASE) / elapsed)) : 0, 0] : ease;
+        });
+        isLevel &&= !isCalm;
+        if (farther(way) > length() >> 2) release(true, 0);
+      } else if (eases.every(([, , since]) => since === RELEASE)) steps = false;
+      before = contact;
+      if (contact >= 0) last = withLeft();
+      const way = toPose(left()).map((x) => shifted(x, shift));
+      if (anyBit(way)) return [legIn(known), way];
+    };
+    // How far the place where it would be held in the clip that was entered is from where the clip will have it, and that place: neither if it is not held.
+    const wayOf = ([toWorld], [toEnd], contact) => {
+      if (point < 0 || contact < 0) return [];
+      const world = (point) => toWorld(pointIn(pose, point, []));
+      const place = anchorAt(world, contact);
+      place[2] = wide(world(contact)[2] + big(left()[2]));
+      return [apart(place, toEnd(pointIn(track.player.raw, contact, []))), place];
+    };
+    const enter = (contact, place, rise) => {
+      before = contact;
+      if (place) {
+        point = contact;
+        anchor = place;
+        isLevel = true;
+      } else if (point >= 0) release(true, rise);
+    };
+    const convert = (by) => {
+      hinge = 0;
+      last = last.map((x) => wideShifted(x, by));
+      anchor = anchor.map((x) => wideShifted(x, by));
+      eases = eases.map(([d, v, since]) => [shifted(d, -by), shifted(v, -by), since]);
+    };
+    // How far the hips go down for a leg that is to reach a target.
+    const dropTo = ([[, hip, , ankle], left]) => {
+      const way = difference(difference(hip[0], ankle[0]), left);
+      const height = upward * way[up];
+      // Not straighter than in the clip, or nearly straight.
+      const reach = clamp(floor(sqrt(squareOf(difference(hip[0], ankle[0])))), farthest - (farthest >> 7), farthest);
+      way[up] = 0;
+      return height - floor(sqrt(max(0, reach ** 2 - squareOf(way))));
+    };
+    // Turns hip and knee so that the ankle comes to a target, or as near as the knee allows. The ankle keeps its rotation in the world.
+    const solve = ([[, above], [hip, hipTurn], [knee, kneeTurn], [ankle, ankleTurn]], target) => {
+      const [way, distance] = directionOf(difference(target, hip));
+      if (!way || difference(target, ankle).every((x) => abs(x) < 3)) return;
+      const unitOf = (vector, length) => vector.map((x) => (clamp(x, -length, length) * trunc(2 ** 29 / max(length, 256))) >> 14);
+      const times = (vector, by) => vector.map((x) => (clamp(x, -ONE, ONE) * (min(by, 0xffff) >> 1)) >> 14);
+      const old = [unitOf(difference(knee, hip), upper), unitOf(difference(ankle, knee), lower)];
+      const [bend, sine] = directionOf(crossed(...old));
+      // At least 2 degrees show the axis of the bend; a straight knee bends as it did, or else across the way to its target.
+      const isBent = sine > ONE / 28;
+      if (isBent) hinge = imageOf(transposed(kneeTurn), bend);
+      const [axis = [0, 0, ONE]] = isBent ? [bend] : hinge ? [imageOf(kneeTurn, hinge)] : directionOf(crossed(way, [ONE, 0, 0]));
+      const [across] = directionOf(crossed(way, axis));
+      const squares = old.map((bone) => (isBent ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));
+      if (!across || !squares.every(Boolean)) return;
+      const reached = clamp(distance, closest, farthest);
+      const [a, b, d] = [upper, lower, reached].map((length) => length >> 2);
+      const cosine = clamp(trunc(((a * a + d * d - b * b) * 2) / max(1, (a * d) >> 13)), -ONE, ONE);
+      const side = floor(sqrt(ONE * ONE - cosine * cosine));
+      const thigh = way.map((x, axis) => ((x * cosine) >> 15) + ((across[axis] * side) >> 15));
+      const shin = unitOf(difference(times(way, reached), times(thigh, upper)), lower);
+      const turns = [thigh, shin].map((bone, index) => then(then(columns(bone, crossed(across, way)), transposed(columns(old[index], squares[index]))), [hipTurn, kneeTurn][index]));
+      [above, ...turns].forEach((turn, index) => write(leg[index + 1], turn, [...turns, ankleTurn][index]));
+    };
+    // Goes down with the hips; a foot that is free stays where it is.
+    const reachDown = (wanted, sunk) => {
+      if (!wanted && !sunk) return;
+      const raised = (place, by) => place.map((x, axis) => (axis === up ? (x + by) | 0 : x));
+      const [places, way] = wanted ?? [legIn().map(([place, turn]) => [raised(place, sunk), turn]), ORIGIN];
+      solve(places.map(([place, turn]) => [raised(place, -sunk), turn]), sum(places[3][0], way));
+    };
+    return [convert, length, wayOf, enter, update, dropTo, reachDown];
+  };
+  const feet = named.map(footOf);
+  const carrier = chainOf(named[0][0]).slice(0, -3).map((index) => rig.joints[index]).find(({ kinds }) => kinds.includes(up));
+
+  // ---- Both feet
+  const find = () => {
+    const by = exponent - track.clip.exponent;
+    ({ groups } = animator);
+    ({ exponent } = track.clip);
+    shift = rig.exponent + down - exponent;
+    feet.forEach(([convert]) => convert(by));
+  };
+  // Between the axes of a pose and those of the world: two horizontal coordinates and the height.
+  const frameOf = ([place, heading]) => {
+    const there = headingOf(heading);
+    const back = [-heading | 0, -there[1], there[2]];
+    return [
+      (point) => {
+        const [a, b, height] = cycled(point, up + 1).map(big);
+        return [...added(rotated(there, a, b), place), height];
+      },
+      ([a, b, height]) => cycled([...rotated(back, big(a), big(b)).map((x) => Number(x) | 0), height], 2 - up),
+    ];
+  };
+  // Places the clip that was entered by the feet that are held and are on the ground in it, too.
+  const enterAll = (frame, found) => {
+    animator.leaveCarried();
+    const place = animator.place.map((channel) => big(track.player.raw[channel] ?? 0));
+    const [at, heading] = animator.placedAt(place);
+    // The points of the clip's pose have its place in them.
+    const end = frameOf([apart(at, rotated(headingOf(heading), ...place)), heading]);
+    const ways = feet.map((foot, index) => foot[2](frame, end, found[index]));
+    const length = feet[0][1]();
+    // Of two ways the mean, or the shorter one if they are far apart.
+    let [[glide] = [[0n, 0n, 0n]], [other] = []] = ways.filter(([way]) => way);
+    if (other) {
+      if (farther(apart(glide, other)) <= length >> 3) glide = glide.map((x, axis) => (x + other[axis]) / 2n);
+      else if (farther(glide) > farther(other)) glide = other;
+    }
+    if (farther(glide) > length >> 1 || animator.left < 2) glide = [0n, 0n, 0n];
+    if (farther(glide)) animator.glide(glide);
+    feet.forEach(([, , , enter], index) => {
+      const [way = glide, place] = ways[index];
+      const rest = farther(apart(way, glide));
+      enter(found[index], rest <= floor(length / 12) && place, upward * (min(Number(rest), length >> 2) >> 2));
+    });
+  };
+  find();
+  return {
+    next: (transition) => {
+      const { clip, player, speed } = track;
+      const part = floor(track.rest / clip.frameTimeNs);
+      const behind = +(part > 0);
+      let least = Infinity;
+      let start;
+      for (const [own, , at, to] of entries) {
+        let ahead = at - player.frame - behind;
+        if (ahead < 0) ahead = clip.looped ? ahead + clip.frames : Infinity;
+        if (own === transition && speed > 0 && ahead < least) {
+          least = ahead;
+          start = to;
+        }
+      }
+      // Rounded up, so that the frame is reached.
+      if (least < Infinity) return [start, Number((big((least + behind) * 65536 - part) * big(clip.frameTimeNs) + big(speed - 1)) / big(speed))];
+    },
+    hold: (clip, frame, entered, elapsed) => {
+      if (entered) find();
+      const axes = frameOf(animator.placement);
+      // The points that are on the ground.
+      const rows = contacts.slice(ends[clip - 1] ?? 0, ends[clip]);
+      const found = feet.map((_, foot) => rows.find(([own, , from, to]) => own === foot && frame >= from && frame < to)?.[1] ?? -1);
+      if (entered) enterAll(axes, found);
+      const wanted = feet.map(([, , , , update], foot) => update(axes, found[foot], !animator.left, elapsed));
+      // 2 cm, at most.
+      const most = shifted(shifted(min(floor((2000000 * 256) / round(rig.cmPerUnit * 1e6)), 2 ** 30), exponent + 8), shift);
+      const drop = !carrier ? 0 : min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0)));
+      if (drop) pose[carrier.first + carrier.kinds.lastIndexOf(up)] -= upward * shifted(drop, -shift);
+      feet.forEach((foot, index) => foot[6](wanted[index], upward * drop));
+    },
+  };
+};
