@@ -28,6 +28,7 @@ const RIGHT: u16 = 1 << 4;
 const LEFT: u16 = 1 << 5;
 const UP: u16 = 1 << 6;
 const R: u16 = 1 << 8;
+const L: u16 = 1 << 9;
 
 /// Frames that a button is held in a test, and after which the next one is pressed: the camera is set up meanwhile.
 const HELD: u32 = 6;
@@ -151,11 +152,18 @@ fn a_body_with_volume_plays_for_a_minute_at_30_pictures_a_second_and_none_is_lat
 }
 
 /// What the buttons do to the character: as in `firmware/boards/gba/src/keys.rs`.
-const STEER: [SteerKey<'static>; 5] = {
+const STEER: [SteerKey<'static>; 6] = {
     const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
         SteerKey { button, letter: 0, input, holds }
     }
-    [key(UP, "go", true), key(B, "fast", true), key(A, "jump", false), key(LEFT, "left", false), key(R, "wave", false)]
+    [
+        key(UP, "go", true),
+        key(B, "fast", true),
+        key(A, "jump", false),
+        key(LEFT, "left", false),
+        key(R, "wave", false),
+        key(L, "bow", false),
+    ]
 };
 
 /// Buttons, and for how many frames they are held: idle, walk, wave while walking, run, jump while running, stop, jump, turn, wave.
@@ -180,13 +188,32 @@ fn the_buttons_steer_the_character() {
     if setup::host_only("a character on the Game Boy Advance") {
         return;
     }
+    let late = steered(&CARTRIDGE.2, &SESSION, false);
+    // Those of a switch to another clip.
+    assert!(late <= 20, "{late}");
+}
+
+/// Bow, walk, and stand before the other one with a hand on its shoulder.
+const MEETING: [(u16, u32); 6] = [(0, 30), (L, 5), (0, 180), (UP, 66), (0, 240), (LEFT, 5)];
+
+#[test]
+fn two_characters_meet_as_on_the_host() {
+    if setup::host_only("two characters on the Game Boy Advance") {
+        return;
+    }
+    steered(&gba::image("face,meet", &[]).unwrap(), &MEETING, true);
+}
+
+/// Plays a session of buttons on an image, and compares each picture of the display with what the same program shows here. Returns how many pictures took
+/// longer than a frame of the display.
+fn steered(image: &[u8], session: &[(u16, u32)], meets: bool) -> usize {
     // The start screen is there. The character is there long before the session begins.
     const BUTTON: u32 = 60;
     const BEGIN: u32 = 300;
-    let mut console = Console::new(&CARTRIDGE.2).unwrap().hold(BUTTON, A).hold(BUTTON + 4, 0);
+    let mut console = Console::new(image).unwrap().hold(BUTTON, A).hold(BUTTON + 4, 0);
     let mut end = BEGIN;
-    for (keys, frames) in SESSION {
-        console = console.hold(end, keys);
+    for (keys, frames) in session {
+        console = console.hold(end, *keys);
         end += frames;
     }
     // The program marks four stretches a picture: motion, kinematics, drawing and, to the display's blank, the page; what comes after the
@@ -200,12 +227,12 @@ fn the_buttons_steer_the_character() {
     // A picture shows the buttons and the time of the blank at which the one before it was shown.
     let held = |frame: u32| {
         let mut begun = BEGIN;
-        SESSION.iter().take_while(|(_, frames)| (begun <= frame, begun += frames).0).last().map_or(0, |(keys, _)| *keys)
+        session.iter().take_while(|(_, frames)| (begun <= frame, begun += frames).0).last().map_or(0, |(keys, _)| *keys)
     };
     let mut readings = vec![Reading { ticks: 0, held: 0 }, Reading { ticks: 1, held: 0 }];
     readings.extend(blanks.windows(2).map(|pair| Reading { ticks: pair[1] - pair[0], held: held(pair[1]) }));
     let bank = std::fs::read(harness::steered::bank()).unwrap();
-    let expected = simulator::steer(&bank, &STEER, &[], &readings).unwrap();
+    let expected = simulator::steer(&bank, meets, &STEER, &["info"], &readings).unwrap();
     let expected: Vec<Vec<u8>> = expected.iter().map(gba::pixels).collect();
     let mut next = 0;
     let mut shown = 0;
@@ -226,12 +253,9 @@ fn the_buttons_steer_the_character() {
     assert_eq!(shown, frames);
     let late = blanks.windows(2).filter(|pair| pair[1] - pair[0] > 1).count();
     let longest = blanks.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
-    println!(
-        "{frames} frames of a steered character are equal; of {} pictures {late} took longer than a frame, the longest {longest}",
-        blanks.len()
-    );
-    // Those of a switch to another clip.
-    assert!(late <= 20 && longest <= 4);
+    println!("{frames} frames are equal; of {} pictures {late} took longer than a frame, the longest {longest}", blanks.len());
+    assert!(longest <= 4, "{longest}");
+    late
 }
 
 #[test]

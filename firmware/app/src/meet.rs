@@ -39,12 +39,12 @@ pub fn meet<B: Board, const CHANNELS: usize>(
 ) -> Exit {
     let mode = options.mode;
     let mut view_state = ViewState::new(&options);
-    let style = view_state.style;
+    let (style, feet) = (view_state.style, options.feet);
     #[cfg(feature = "solid")]
     let style = Style { look: options.other_look, ..style };
     let listener = Listener::default();
     let mut context = PlayContext { mode, view_state: &mut view_state, framebuffer, board, listener };
-    exit(set_up::<B, CHANNELS>(bank, keys, leave, style, &mut context))
+    exit(set_up::<B, CHANNELS>(bank, keys, leave, style, feet, &mut context))
 }
 
 fn set_up<B: Board, const CHANNELS: usize>(
@@ -52,6 +52,7 @@ fn set_up<B: Board, const CHANNELS: usize>(
     keys: &[SteerKey],
     leave: u16,
     other_style: Style,
+    holds_feet: bool,
     context: &mut PlayContext<B>,
 ) -> Result<Outcome, Refusal> {
     // One by one: as arrays they would be copied, which takes their stack twice.
@@ -60,7 +61,7 @@ fn set_up<B: Board, const CHANNELS: usize>(
     let mut first = BoardRenderer::<B>::empty();
     let mut second = BoardRenderer::<B>::empty();
     let meeting = Meeting::default();
-    let (steered, mut other) = (steered.character(bank)?, other.character(bank)?);
+    let (steered, mut other) = (steered.character(bank, holds_feet)?, other.character(bank, holds_feet)?);
     PairedSource::put(&mut other, APART_CM);
     for (renderer, style) in [(&mut first, context.view_state.style), (&mut second, other_style)] {
         aim::<B, CHANNELS>(bank, [steered.pose(), other.pose()], renderer, style)?;

@@ -45,6 +45,9 @@ pub struct Options {
     pub awake: bool,
     /// Number of figures side by side.
     pub figures: usize,
+    /// Whether a steered character holds its feet, if its bank has a table of them. A console of 16 MHz has no time for that.
+    #[cfg(feature = "steer")]
+    pub feet: bool,
     /// Whether poses arrive over the serial line.
     #[cfg(feature = "link")]
     pub link: bool,
@@ -87,6 +90,8 @@ impl Options {
             hud: false,
             awake: false,
             figures: 1,
+            #[cfg(feature = "steer")]
+            feet: true,
             #[cfg(feature = "link")]
             link: false,
             #[cfg(feature = "link")]

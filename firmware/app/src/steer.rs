@@ -63,7 +63,7 @@ pub fn steer<B: Board, const CHANNELS: usize>(
     let mut view_state = ViewState::new(&Options { hud: true, ..options });
     let listener = Listener::default();
     let mut context = PlayContext { mode, view_state: &mut view_state, framebuffer, board, listener };
-    exit(set_up::<B, CHANNELS>(bank, keys, leave, &mut context))
+    exit(set_up::<B, CHANNELS>(bank, keys, leave, options.feet, &mut context))
 }
 
 /// Says in the log why something cannot be played.
@@ -106,14 +106,14 @@ impl<'a, const CHANNELS: usize> Body<'a, CHANNELS> {
         }
     }
 
-    /// The character of a bank, with its first layer and its feet, if it has them.
-    pub fn character<'m>(&'m mut self, bank: &'a [u8]) -> Result<Character<'a, 'm>, Refusal> {
+    /// The character of a bank, with its first layer and, if they are to be held, its feet, if it has them.
+    pub fn character<'m>(&'m mut self, bank: &'a [u8], holds_feet: bool) -> Result<Character<'a, 'm>, Refusal> {
         let Body { memory, states, values, sampled, words, feet } = self;
         let mut character = Character::new(bank, memory.lend())?;
         if character.table().layer(0).is_some() {
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
         }
-        match character.lend_feet(feet) {
+        match if holds_feet { character.lend_feet(feet) } else { Ok(()) } {
             // A bank without feet.
             Ok(()) | Err(pantin_animator::Error::Machine(TableError::Missing)) => {}
             Err(error) => return Err(error.into()),
@@ -127,12 +127,13 @@ fn set_up<B: Board, const CHANNELS: usize>(
     bank: &[u8],
     keys: &[SteerKey],
     leave: u16,
+    holds_feet: bool,
     context: &mut PlayContext<B>,
 ) -> Result<Outcome, Refusal> {
     let mut body = Body::<CHANNELS>::new();
     let mut renderer = BoardRenderer::<B>::empty();
     aim::<B>(bank, context.view_state.style, &mut renderer, &mut body.states, &mut body.values, &mut body.sampled)?;
-    let mut source = SteeredSource::new(body.character(bank)?, keys, leave, context.mode, context.board.held());
+    let mut source = SteeredSource::new(body.character(bank, holds_feet)?, keys, leave, context.mode, context.board.held());
     Ok(play(
         &mut [Actor { entry: &Entry { name: "", bytes: &[], rig: &[] }, source: &mut source, content: &mut renderer }],
         context,

@@ -349,7 +349,9 @@ mod tests {
     fn the_other_one_bows_and_waves_and_a_hand_comes_to_its_shoulder() {
         let mut bodies = [Body::<64>::new(), Body::new()];
         let [first, second] = &mut bodies;
-        let (Ok(steered), Ok(mut other)) = (first.character(BANK), second.character(BANK)) else { panic!("the character") };
+        let (Ok(steered), Ok(mut other)) = (first.character(BANK, true), second.character(BANK, true)) else {
+            panic!("the character")
+        };
         PairedSource::put(&mut other, 245);
         let meeting = Meeting::default();
         let source =

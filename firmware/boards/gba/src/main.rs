@@ -59,6 +59,9 @@ fn main() -> ! {
 fn options() -> Options {
     Options {
         hud: true,
+        // Most pictures would take two frames of the display.
+        #[cfg(feature = "steer")]
+        feet: false,
         #[cfg(feature = "solid")]
         solid: true,
         #[cfg(feature = "solid")]
