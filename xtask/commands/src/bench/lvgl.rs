@@ -61,7 +61,7 @@ const BODY: &[&str] = &["-DWITH_PANTIN"];
 const SHOWN: [Shown; 6] = [
     Shown { name: "no widget", makes: "make_nothing", with: &[], build: &PLAIN },
     Shown { name: "lv_pantin: the cartoon, 23 emotes, speech", makes: "make_face", with: FACE, build: &PLAIN },
-    Shown { name: "lv_pantin: a body with volume, 15 clips, a state machine", makes: "make_solid", with: BODY, build: &PLAIN },
+    Shown { name: "lv_pantin: a body with volume, a state machine of 16 clips", makes: "make_solid", with: BODY, build: &PLAIN },
     Shown { name: "lv_pantin: the same as lines", makes: "make_lines", with: BODY, build: &PLAIN },
     Shown { name: "lv_gif: one emote", makes: "make_gif", with: &["-DWITH_GIF"], build: &PLAIN },
     Shown { name: "lv_lottie (ThorVG): one emote", makes: "make_lottie", with: &["-DWITH_LOTTIE"], build: &LOTTIE },
