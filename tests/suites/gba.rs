@@ -28,7 +28,6 @@ const RIGHT: u16 = 1 << 4;
 const LEFT: u16 = 1 << 5;
 const UP: u16 = 1 << 6;
 const R: u16 = 1 << 8;
-const L: u16 = 1 << 9;
 
 /// Frames that a button is held in a test, and after which the next one is pressed: the camera is set up meanwhile.
 const HELD: u32 = 6;
@@ -152,7 +151,7 @@ fn a_body_with_volume_plays_for_a_minute_at_30_pictures_a_second_and_none_is_lat
 }
 
 /// What the buttons do to the character: as in `firmware/boards/gba/src/keys.rs`.
-const STEER: [SteerKey<'static>; 6] = {
+const STEER: [SteerKey<'static>; 5] = {
     const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
         SteerKey { button, letter: 0, input, holds }
     }
@@ -188,25 +187,14 @@ fn the_buttons_steer_the_character() {
     if setup::host_only("a character on the Game Boy Advance") {
         return;
     }
-    let late = steered(&CARTRIDGE.2, &SESSION, false);
+    let late = steered(&CARTRIDGE.2, &SESSION);
     // Those of a switch to another clip.
     assert!(late <= 20, "{late}");
 }
 
-/// Bow, walk, and stand before the other one with a hand on its shoulder.
-const MEETING: [(u16, u32); 6] = [(0, 30), (L, 5), (0, 180), (UP, 66), (0, 240), (LEFT, 5)];
-
-#[test]
-fn two_characters_meet_as_on_the_host() {
-    if setup::host_only("two characters on the Game Boy Advance") {
-        return;
-    }
-    steered(&gba::image("face,meet", &[]).unwrap(), &MEETING, true);
-}
-
 /// Plays a session of buttons on an image, and compares each picture of the display with what the same program shows here. Returns how many pictures took
 /// longer than a frame of the display.
-fn steered(image: &[u8], session: &[(u16, u32)], meets: bool) -> usize {
+fn steered(image: &[u8], session: &[(u16, u32)]) -> usize {
     // The start screen is there. The character is there long before the session begins.
     const BUTTON: u32 = 60;
     const BEGIN: u32 = 300;
@@ -232,7 +220,7 @@ fn steered(image: &[u8], session: &[(u16, u32)], meets: bool) -> usize {
     let mut readings = vec![Reading { ticks: 0, held: 0 }, Reading { ticks: 1, held: 0 }];
     readings.extend(blanks.windows(2).map(|pair| Reading { ticks: pair[1] - pair[0], held: held(pair[1]) }));
     let bank = std::fs::read(harness::steered::bank()).unwrap();
-    let expected = simulator::steer(&bank, meets, &STEER, &["info"], &readings).unwrap();
+    let expected = simulator::steer(&bank, &STEER, &[], &readings).unwrap();
     let expected: Vec<Vec<u8>> = expected.iter().map(gba::pixels).collect();
     let mut next = 0;
     let mut shown = 0;
