@@ -155,14 +155,7 @@ const STEER: [SteerKey<'static>; 5] = {
     const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
         SteerKey { button, letter: 0, input, holds }
     }
-    [
-        key(UP, "go", true),
-        key(B, "fast", true),
-        key(A, "jump", false),
-        key(LEFT, "left", false),
-        key(R, "wave", false),
-        key(L, "bow", false),
-    ]
+    [key(UP, "go", true), key(B, "fast", true), key(A, "jump", false), key(LEFT, "left", false), key(R, "wave", false)]
 };
 
 /// Buttons, and for how many frames they are held: idle, walk, wave while walking, run, jump while running, stop, jump, turn, wave.

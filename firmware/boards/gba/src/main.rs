@@ -37,11 +37,14 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        #[cfg(feature = "meet")]
-        use pantin_app::meet as program;
-        #[cfg(not(feature = "meet"))]
-        use pantin_app::steer as program;
-        program::<_, CHANNELS>(board_common::CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
+        pantin_app::steer::<_, CHANNELS>(
+            board_common::CHARACTER,
+            &keys::STEER,
+            keys::SELECT,
+            options(),
+            &mut framebuffer,
+            &mut board,
+        );
         board.overlay([""; 2]);
     }
     loop {
@@ -66,8 +69,6 @@ fn options() -> Options {
         solid: true,
         #[cfg(feature = "solid")]
         look: board_common::LOOK,
-        #[cfg(all(feature = "meet", feature = "solid"))]
-        other_look: board_common::OTHER_LOOK,
         #[cfg(feature = "neck")]
         neck: true,
         ..Options::parse([])
