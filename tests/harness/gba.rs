@@ -21,7 +21,7 @@ pub const LCD: Display = Display { width: 240, height: 160, depth: Depth::Bgr555
 pub const FRAME_CYCLES: u32 = 280_896;
 /// Most bytes of an image with all our motions, whose figures are lines.
 pub const MOST: usize = 256 * 1024;
-/// The same of one whose bodies have volume: joints keep how they are turned.
+/// Most bytes where bodies have volume: joints keep how they are turned.
 pub const MOST_SOLID: usize = 384 * 1024;
 
 /// Where cartridges begin in the console's memory.

@@ -96,7 +96,7 @@ static pantin_result lend_parts(lv_pantin_body_t *body) {
     return PANTIN_OK;
 }
 
-/* Opens what the bytes are: a clip, or a bank of which `first` is the first clip. */
+/* Opens what the bytes are: a clip, or a bank, whose first clip is `first`. */
 static pantin_result open_first(const uint8_t *bytes, uint32_t length, pantin_source *source, pantin_bank *bank, pantin_clip *first) {
     pantin_entry entry;
     pantin_memory(source, bytes, length);

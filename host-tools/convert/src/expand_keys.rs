@@ -245,7 +245,7 @@ mod tests {
         let folders = ["", "library", "face", "emotes"].map(|folder| root.join(folder));
         let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
         let files: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|extension| extension == "keys")).collect();
-        assert_eq!(files.len(), 58);
+        assert_eq!(files.len(), 59);
         let out = tempfile::tempdir().unwrap();
         for file in files {
             let written = loaded(&file);

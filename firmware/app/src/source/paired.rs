@@ -81,7 +81,7 @@ impl Axes {
         let shift = i32::from(clip.length_exponent());
         let unit = (1_000_000u64 << 24).checked_div(clip.rig().unit_micro_cm().into()).unwrap_or(0);
         let scaled = if shift >= 0 { unit >> shift.min(63) } else { unit.saturating_mul(1 << shift.unsigned_abs().min(40)) };
-        // Below 2^23 raw units, of which a channel has 2^32.
+        // Below 2^39 raw units: more than a channel holds.
         let cm = scaled.min(1 << 47) as i64;
         Axes { up: clip.rig().up().axis() % 3, negative: clip.rig().up().is_negative(), cm: cm >> 16 }
     }

@@ -14,7 +14,7 @@ use crate::bindings::{SOURCES, output};
 /// Options of all that is compiled.
 const OPTIONS: &[&str] =
     &["-Os", "-ffunction-sections", "-fdata-sections", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"];
-/// The same with what Lottie needs.
+/// With what Lottie needs, too.
 const VECTOR: &[&str] = &[
     "-Os",
     "-ffunction-sections",
