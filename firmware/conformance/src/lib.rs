@@ -4,7 +4,7 @@
 use pantin::codec::crc;
 use pantin::{ChannelState, Clip, Player, TooSmall};
 use pantin_animator::session::{Replay, Session};
-use pantin_animator::{Character, Feet, LayerMemory, Memory};
+use pantin_animator::{Character, LayerMemory, Memory};
 
 /// How a pose was come by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,21 +56,17 @@ pub const STEERED: &str = "steered";
 /// Pictures of the session in a second.
 pub const RATE: u16 = 30;
 
-/// Plays a session of a bank's state machine with its feet held, and tells for each picture the CRC of the pose and of the figure's place and heading.
-/// False if something of it cannot be played.
+/// Plays a session of a bank's state machine, and tells for each picture the CRC of the pose and of the figure's place and heading. False if
+/// something of it cannot be played.
 pub fn steer<'a, 'm>(
     bank: &'a [u8],
     session: &'a str,
     memory: Memory<'m>,
     layer: LayerMemory<'m>,
-    feet: &'m mut Feet<'a>,
     tell: &mut dyn FnMut(Play, u16),
 ) -> bool {
     let Ok(mut character) = Character::new(bank, memory) else { return false };
     if character.table().layers() > 0 && character.lend_layer(layer).is_err() {
-        return false;
-    }
-    if character.lend_feet(feet).is_err() {
         return false;
     }
     let Ok(session) = Session::new_checked(session, character.table()) else { return false };

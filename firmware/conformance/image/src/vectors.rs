@@ -2,7 +2,7 @@
 
 use conformance::Play;
 use pantin::{ChannelState, Clip};
-use pantin_animator::{Feet, LayerMemory, Workspace};
+use pantin_animator::{LayerMemory, Workspace};
 
 /// Channels that the memory here suffices for.
 const CHANNELS: usize = 300;
@@ -35,7 +35,7 @@ fn steer(print: &mut dyn FnMut(&[u8])) -> bool {
     let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
     print(conformance::STEERED.as_bytes());
     print(b"\n");
-    conformance::steer(BANK, SESSION, memory.lend(), layer, &mut Feet::new(), &mut |way, crc| print(&line(way, crc)))
+    conformance::steer(BANK, SESSION, memory.lend(), layer, &mut |way, crc| print(&line(way, crc)))
 }
 
 #[inline(never)]
