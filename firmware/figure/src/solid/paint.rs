@@ -203,7 +203,7 @@ fn columns_of(circles: &[Circle], outline: i32, width: i32) -> [i32; 2] {
 /// Spans of at most this many pixels are drawn over what lies below them: two spans beside them would take longer.
 const NARROW: i32 = 8;
 
-/// Draws a hull's rows in the window from row `top` on, of which all pixels are in `columns` and on the surface: the outline first, then the
+/// Draws a hull's rows in the window from row `top` on, whose pixels are all in `columns` and on the surface: the outline first, then the
 /// fill, which covers parts of it. Apart, both loops keep in registers what they need.
 #[inline(never)]
 fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, columns: [i32; 2], outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
