@@ -29,7 +29,7 @@ const LIST: [(&str, Place, &str); 30] = [
     (
         "test",
         Place::Here(test::run),
-        "Runs what belongs before a commit; --boards, --bindings, --web, --packages run other groups, --all everything",
+        "Runs what belongs before a commit; --boards, --bindings, --web, --packages, --captures run other groups, --all everything",
     ),
     ("arduino", COMMANDS, "Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),

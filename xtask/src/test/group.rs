@@ -15,11 +15,13 @@ pub enum Group {
     Web,
     /// What a release and its users rely on.
     Packages,
+    /// The encoder on captured clips of others.
+    Captures,
 }
 
 impl Group {
     /// All groups.
-    pub const ALL: [Group; 5] = [Group::Daily, Group::Boards, Group::Bindings, Group::Web, Group::Packages];
+    pub const ALL: [Group; 6] = [Group::Daily, Group::Boards, Group::Bindings, Group::Web, Group::Packages, Group::Captures];
 
     /// The group's option on the command line; the daily one has none.
     pub fn option(self) -> &'static str {
@@ -29,6 +31,7 @@ impl Group {
             Group::Bindings => "--bindings",
             Group::Web => "--web",
             Group::Packages => "--packages",
+            Group::Captures => "--captures",
         }
     }
 
@@ -57,7 +60,7 @@ impl Group {
             Group::Web => chosen(&WEB),
             // Whatever no other group takes.
             Group::Boards => Some(DAILY.iter().chain(&WEB).flat_map(|name| ["--skip".into(), (*name).into()]).collect()),
-            Group::Bindings | Group::Packages => None,
+            Group::Bindings | Group::Packages | Group::Captures => None,
         }
     }
 }
@@ -82,6 +85,9 @@ const DAILY: [&str; 16] = [
     "steered::the_record",
     "vectors::",
 ];
+
+/// A part of the names of the host tool's tests that convert captured clips: they take as long as a quarter of the other ones.
+pub const CAPTURED: &str = "captured";
 
 /// Tests that need a browser or the page's modules.
 const WEB: [&str; 2] = ["web::", "conformance::webassembly"];

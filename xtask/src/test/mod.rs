@@ -28,10 +28,13 @@ use xtask::test_programs::{self, Built, HOST_TOOL, TestProgram};
 
 use crate::{public_items, publish};
 use cargo::{Workspace, finish, finish_quietly};
-use group::Group;
+use group::{CAPTURED, Group};
 
 /// With less no test can be linked. A first run of the daily tests takes about 2,200.
 const LEAST_FREE_MEGABYTES: u64 = 500;
+
+/// The host tool's package.
+const HOST_PACKAGE: &str = "pantin-tools";
 
 const USAGE: &str = "Usage: cargo xtask test [OPTIONS]
 
@@ -44,6 +47,7 @@ Options, of which several can be given:
   --bindings   The decoders in C, Arduino, MicroPython and JavaScript, and the Python package: needs compilers for other targets
   --web        The page and the player in Chromium
   --packages   Documentation and its tests, packed crates, public items, the oldest Rust
+  --captures   The encoder's bounds on captured clips, which are in the folder that $PANTIN_DATA names
   --host-only  Leaves out what needs an emulator or a browser";
 
 /// Runs all steps of the groups, failed ones too, then lists them.
@@ -151,9 +155,20 @@ impl Plan {
             if self.has(Group::Daily) {
                 for program in built.programs.iter().filter(|program| program.package != "harness" || program.name == "harness") {
                     steps.run(&format!("tests of {}: {}", program.package, program.name), || {
-                        finish(self.command(program, built), &program.name)
+                        let mut command = self.command(program, built);
+                        if program.package == HOST_PACKAGE {
+                            command.args(["--skip", CAPTURED]);
+                        }
+                        finish(command, &program.name)
                     });
                 }
+            }
+            if let (true, Some(suites)) = (self.has(Group::Captures), built.program(HOST_PACKAGE, "suites")) {
+                steps.run("captured clips", || {
+                    let mut command = self.command(suites, built);
+                    command.arg(CAPTURED);
+                    finish(command, &suites.name)
+                });
             }
             if self.has(Group::Boards) && !self.host_only {
                 steps.run("sizes of all images", || built.xtask("sizes"));
@@ -177,7 +192,7 @@ impl Plan {
     fn command(&self, program: &TestProgram, built: &Built) -> Command {
         let mut command = Command::new(&program.file);
         // Tests of the host tool wait for terminals and lines about as long as they work.
-        if program.package == "pantin-tools" {
+        if program.package == HOST_PACKAGE {
             command.arg("--test-threads=4");
         }
         command.current_dir(&program.folder).envs(built.host_tool.iter().map(|tool| (HOST_TOOL, tool)));
