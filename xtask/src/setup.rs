@@ -1,5 +1,6 @@
 //! What a fresh machine may lack: Rust targets, QEMU, Node.js and npm. Each is installed where that is possible, and said.
 
+use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
@@ -114,10 +115,30 @@ pub fn install_emulator(name: &str) -> Result<PathBuf> {
     if paths::program("apt-get").is_none() || !is_root() {
         return emulator(name);
     }
-    let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(debian(name).split(' ')).collect();
-    let installed = apt_get(&["update"]).and_then(|()| apt_get(&install));
-    installed.with_context(|| format!("{name} is missing and could not be installed"))?;
+    install_packages(debian(name)).with_context(|| format!("{name} is missing and could not be installed"))?;
     emulator(name)
+}
+
+/// Makes sure that clang has its sanitizers, without which it may have been installed.
+pub fn sanitizers() -> Result<()> {
+    let there = || -> Result<bool> {
+        let output = Command::new(emulator("clang")?).arg("-print-runtime-dir").output()?;
+        let folder = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+        let files = fs::read_dir(folder).into_iter().flatten().flatten();
+        Ok(files.into_iter().any(|file| file.file_name().to_string_lossy().starts_with("libclang_rt.asan")))
+    };
+    if there()? {
+        return Ok(());
+    }
+    ensure!(paths::program("apt-get").is_some() && is_root(), "clang has no sanitizers; {}", advice("clang"));
+    install_packages(debian("clang")).context("clang has no sanitizers, and they could not be installed")?;
+    ensure!(there()?, "clang still has no sanitizers: install those of its version");
+    Ok(())
+}
+
+fn install_packages(packages: &str) -> Result<()> {
+    let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(packages.split(' ')).collect();
+    apt_get(&["update"]).and_then(|()| apt_get(&install))
 }
 
 /// Makes sure that the library of mGBA, the Game Boy Advance's emulator, can be linked: installs it on Debian and Ubuntu as root.

@@ -188,7 +188,7 @@ impl Bindings {
             for compiler in hosts.into_iter().chain(TARGETS.iter().map(|target| target.compiler)) {
                 setup::install_emulator(compiler)?;
             }
-            Ok(())
+            setup::sanitizers()
         });
         for compiler in ["gcc", "clang"] {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
