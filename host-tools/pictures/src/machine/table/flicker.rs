@@ -57,7 +57,8 @@ impl Maker<'_, '_> {
     /// Warns of two states, each of which leads to the other while the same inputs are held. `any` are the rows of any state, `of_states` those of each.
     pub(super) fn warn_of_flicker(&mut self, source: &Source, file: &Text, any: &[Row], of_states: &[Vec<Row>]) {
         let list = |state: usize| -> (Vec<Row>, Vec<&Spanned<Transition>>) {
-            let other = |(row, _): &(&Row, &Spanned<Transition>)| usize::from(row[4]) != state;
+            // An input that leads away from any state is an interruption, which is fired.
+            let other = |(row, _): &(&Row, &Spanned<Transition>)| usize::from(row[4]) != state && row[0] != INPUT;
             let any = any.iter().zip(&source.any).filter(other);
             any.chain(of_states[state].iter().zip(&source.states[state].transitions)).unzip()
         };
