@@ -342,3 +342,24 @@ fn a_figure_that_was_built_facing_another_way_faces_as_its_body() {
         .any(|note| note.text.contains("faces 60 degrees to the left") && note.text.contains("by -60 degrees"));
     assert!(said, "{:?}", turned.notes);
 }
+
+#[test]
+fn a_capture_that_runs_gets_no_other_way_by_its_feet() {
+    let data = std::env::var_os("PANTIN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    for (name, speed) in [("bvh_mixamo-beta_run-loop", 420.6), ("bvh_xia_neutral-walk", 98.9)] {
+        let path = data.join(format!("{name}.bvh"));
+        if !path.exists() {
+            return println!("skipped: no captured clips in {}; set PANTIN_DATA", data.display());
+        }
+        let motion = read(&path);
+        assert_eq!(edited(&Edits::new().pace(Pace::Feet), &motion).values, motion.values, "{name}");
+        // As on a treadmill: the feet have about the speed that was taken out.
+        let spot = edited(&Edits::new().in_place(InPlace::Way), &motion);
+        let done = Edits::new().pace(Pace::Feet).apply(spot, &Disk::default()).unwrap();
+        let noted = done.notes.iter().find(|note| note.kind.name() == "travel").unwrap();
+        let found: f64 = noted.text.split(' ').find_map(|word| word.parse().ok()).unwrap();
+        println!("{name}: {found} of {speed} cm a second");
+        assert!((found / speed - 1.0).abs() < 0.15, "{name}: {found}");
+    }
+}

@@ -6,7 +6,7 @@ use super::sides::{Side, counterparts, parts};
 use crate::fk::positions;
 use crate::motion::{Motion, Rig};
 
-/// The two thighs and the two upper arms among the display's joints, left and right: they stay on their side of the body, whatever it does.
+/// The two thighs and the two upper arms among the display's joints, left and right. The first pair that a figure has counts: shoulders turn more than the hips do.
 const PAIRS: [(usize, usize); 2] = [(9, 12), (3, 6)];
 
 /// The horizontal direction, of length 1, in which the figure faces in the mean of all frames. `None` if no names tell left from right, or if it turns to all sides.
@@ -32,9 +32,8 @@ const UNCLEAR: f64 = 0.1;
 /// Joints of the left side with those of the right.
 fn pairs(rig: &Rig) -> Vec<(usize, usize)> {
     let roles = found(rig);
-    let usual: Vec<(usize, usize)> = PAIRS.iter().filter_map(|&(left, right)| Some((roles[left]?, roles[right]?))).collect();
-    if !usual.is_empty() {
-        return usual;
+    if let Some(pair) = PAIRS.iter().find_map(|&(left, right)| Some((roles[left]?, roles[right]?))) {
+        return vec![pair];
     }
     let parts = parts(&rig.joints.iter().map(|joint| joint.name.clone()).collect::<Vec<_>>());
     let others = counterparts(&parts);
