@@ -50,10 +50,10 @@ pub fn turn(motion: &Motion, degrees: f64) -> Result<Motion> {
             let (own, place) = &parents[frame];
             (product(own, &turn), add(*place, apply(own, offset)))
         };
-        for frame in 0..motion.frames {
+        for (frame, (own, at)) in parents.iter().enumerate() {
             let (turned, place) = goal(frame, index);
-            let back = transposed(&parents[frame].0);
-            let offset = apply(&back, subtract(place, parents[frame].1));
+            let back = transposed(own);
+            let offset = apply(&back, subtract(place, *at));
             for (slot, kind) in joint.kinds.iter().enumerate().filter(|(_, kind)| kind.is_position()) {
                 out.values[first + slot][frame] = offset[kind.axis().unwrap_or(0)];
             }

@@ -463,7 +463,7 @@ fn a_line_of_a_list_has_a_frame_rate_of_its_own() {
 fn a_wrong_body_is_refused_under_its_own_option_in_one_line() {
     let folder = super::outputs::Folder::new();
     let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
-    folder.put("cube.keys", "keyframes 1\nfps 30\nframes 3\ncm-per-unit 1\njoint cube offset 0 9 0 channels Yrotation\nend parent cube offset 0 9 0\nkeys linear cube\n 0 0\n 2 9\n".to_owned());
+    folder.put("cube.keys", "keyframes 1\nfps 30\nframes 3\ncm-per-unit 1\njoint cube offset 0 9 0 channels Yrotation\nend parent cube offset 0 9 0\nkeys linear cube\n 0 0\n 2 9\n");
     let refused = folder.run(&["convert", walk.to_str().unwrap(), "--body", "cube.keys", "-o", "a.ptn"]);
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(said.contains("--body: not found in the body: Hips, ") && !said.contains("\\n") && !said.contains("--map"), "{said}");

@@ -432,7 +432,7 @@ fn clips_that_travel_by_different_joints_are_warned_of() {
     for (name, joint) in [("walk", "base"), ("run", "base"), ("kick", "hips")] {
         folder.put(&format!("{name}.keys"), goer(joint));
     }
-    folder.put("hero.toml", "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"kick\", end = true }]\n[[state]]\nname = \"kick\"\n[[any]]\nto = \"walk\"\nend = true\n".to_owned());
+    folder.put("hero.toml", "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"kick\", end = true }]\n[[state]]\nname = \"kick\"\n[[any]]\nto = \"walk\"\nend = true\n");
     let said = |arguments: &[&str]| String::from_utf8(folder.done(arguments).stderr).unwrap();
     let both = "warning: the clips travel by different joints, so that the figure jumps at changes between them: `walk`, `run` by `base`; `kick` by `hips`; `pantin convert` with the same --body FILE";
     for bank in [

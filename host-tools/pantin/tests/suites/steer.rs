@@ -276,7 +276,7 @@ fn the_front_is_that_of_the_figure_at_the_start() {
     );
     folder.put(
         "hero.toml",
-        "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"back\", input = \"a\" }, { to = \"again\", input = \"b\" }]\n[[state]]\nname = \"back\"\n[[state]]\nname = \"again\"\n".to_owned(),
+        "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"back\", input = \"a\" }, { to = \"again\", input = \"b\" }]\n[[state]]\nname = \"back\"\n[[state]]\nname = \"again\"\n",
     );
     folder.done(&["convert", "moves.list", "--same-form", "-o", "moves.ptb"]);
     folder.done(&["machine", "hero.toml", "--bank", "moves.ptb", "-o", "hero.ptb"]);
