@@ -209,6 +209,19 @@ fn a_turn_takes_every_joint_with_it() {
         assert!(off_turn(&motion, &turned, degrees) < 1e-6, "{degrees}: {}", off_turn(&motion, &turned, degrees));
         assert_eq!(turned.rig, motion.rig, "motions that are turned stay in one bank with others");
     }
+    // A root that never turns only places the figure: a player would take its direction for the heading, and undo it.
+    let mut rooted = strider();
+    for kind in [
+        pantin_convert::motion::Kind::Zrotation,
+        pantin_convert::motion::Kind::Xrotation,
+        pantin_convert::motion::Kind::Yrotation,
+    ] {
+        rooted.rig.joints[0].kinds.push(kind);
+        rooted.values.insert(3, vec![0.0; rooted.frames]);
+        rooted.keys.insert(3, None);
+    }
+    let turned = edited(&Edits::new().turn(70.0), &rooted);
+    assert!(off_turn(&rooted, &turned, 70.0) < 1e-6 && turned.values[3..6] == rooted.values[3..6]);
     let error = refused(&Edits::new().turn(90.0), &read(&motions("walk.keys")));
     assert!(error.contains("turn 90: ") && error.contains("has no channels by which it could follow"), "{error}");
     assert!(refused(&Edits::new().turn(f64::NAN), &motion).contains("expected a number of degrees"));

@@ -17,13 +17,26 @@ type World = (Matrix, [f64; 3]);
 
 /// Turns the whole motion by `degrees` to the figure's left, about the vertical line through the place of the root in the first frame.
 ///
-/// The topmost joints that can turn take the turn, and the joints with positions above them their part of the way. Fails if a joint cannot follow.
+/// The topmost joints that turn in the motion take the turn, and the joints with positions above them their part of the way: a root that only places the figure stays as it
+/// is, since a player takes the direction of the joint that carries the figure for its heading, and gives each clip the heading of the one before. Where that cannot
+/// be, the topmost joints that can turn take it. Fails if a joint cannot follow.
 pub fn turn(motion: &Motion, degrees: f64) -> Result<Motion> {
     require!(degrees.is_finite(), Error::setting(Setting::Turn, "expected a number of degrees"));
-    let mut out = motion.clone();
     if motion.rig.joints.is_empty() || motion.frames == 0 {
-        return Ok(out);
+        return Ok(motion.clone());
     }
+    let firsts = motion.rig.first_channels();
+    let turning = |index: usize| {
+        let kinds = motion.rig.joints[index].kinds.iter().enumerate();
+        let changes = |values: &[f64]| values.iter().any(|value| *value != values[0]);
+        { kinds }.any(|(slot, kind)| !kind.is_position() && changes(&motion.values[firsts[index] + slot]))
+    };
+    turned(motion, degrees, &turning).or_else(|_| turned(motion, degrees, &|_| true))
+}
+
+/// The motion turned by joints that `takes` chooses.
+fn turned(motion: &Motion, degrees: f64, takes: &dyn Fn(usize) -> bool) -> Result<Motion> {
+    let mut out = motion.clone();
     let sign = if motion.rig.up.is_negative() { -1.0 } else { 1.0 };
     let by = about(motion.rig.up.axis(), sign * degrees.to_radians());
     let poses: Vec<Vec<World>> = (0..motion.frames).map(|frame| pose(motion, Some(frame))).collect();
@@ -57,7 +70,9 @@ pub fn turn(motion: &Motion, degrees: f64) -> Result<Motion> {
             for (slot, kind) in joint.kinds.iter().enumerate().filter(|(_, kind)| kind.is_position()) {
                 out.values[first + slot][frame] = offset[kind.axis().unwrap_or(0)];
             }
-            write(joint, first, &mut out.values, frame, &product(&back, &turned));
+            if takes(index) {
+                write(joint, first, &mut out.values, frame, &product(&back, &turned));
+            }
         }
         let turned = |frame: usize| alike(&world(&out.values, frame).0, &goal(frame, index).0);
         let taken = (0..motion.frames).all(turned);
