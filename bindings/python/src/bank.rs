@@ -1,8 +1,10 @@
 //! Banks: clips of one rig in one file.
 
 use crate::error::exception;
+use crate::words::fields_of_bank;
 use anyhow::{Context, Result};
 use pantin::Bank;
+use pantin_convert::Memory;
 use pantin_convert::bank::{self, CheckedRig, Named};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -36,6 +38,16 @@ pub fn pack(py: Python<'_>, clips: Vec<(String, Vec<u8>)>) -> PyResult<Vec<u8>> 
         bank::encode(&clips.into_iter().map(named).collect::<Result<Vec<_>>>()?)
     };
     py.detach(packed).map_err(|error| exception(py, &error, None))
+}
+
+/// What is odd about a bank: its notes as JSON.
+#[pyfunction]
+pub fn bank_notes(py: Python<'_>, bank: &[u8]) -> PyResult<String> {
+    let notes = || -> Result<String> {
+        let note = bank::travel(&Bank::new_checked(bank)?, Memory::default())?;
+        Ok(serde_json::to_string(&note.iter().map(fields_of_bank).collect::<Vec<_>>())?)
+    };
+    py.detach(notes).map_err(|error| exception(py, &error, None))
 }
 
 /// A clip's file with its rig in it; `rig` is that of a clip which has none.

@@ -22,7 +22,7 @@ use pyo3::pymodule;
 #[pymodule]
 mod _pantin {
     #[pymodule_export]
-    use super::bank::{bank_clip, bank_names, pack, with_rig};
+    use super::bank::{bank_clip, bank_names, bank_notes, pack, with_rig};
     #[pymodule_export]
     use super::convert::{check_options, convert};
     #[pymodule_export]

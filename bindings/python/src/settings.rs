@@ -2,7 +2,7 @@
 
 use pantin_convert::Level;
 use pantin_convert::Rotations;
-use pantin_convert::edit::{Body, Edits, InPlace};
+use pantin_convert::edit::{Body, Edits, InPlace, Pace};
 use pantin_convert::import::{ImportOptions, up};
 use pantin_convert::motion::Up;
 use pantin_convert::number::Number;
@@ -55,6 +55,8 @@ pub struct Settings {
     scale: Option<f64>,
     smooth: Option<f64>,
     in_place: Option<String>,
+    turn: Option<f64>,
+    pace: Option<String>,
     append: Vec<PathBuf>,
     blend: Option<f64>,
     joint_map: Option<PathBuf>,
@@ -134,6 +136,9 @@ impl Settings {
             Some("way-and-heading") => Some(InPlace::WayAndHeading),
             Some(_) => return Err(Error::setting(Setting::InPlace, "expected 'way' or 'way-and-heading'")),
         };
+        edits.turn = self.turn;
+        let pace = |text: &str| text.parse::<Pace>().map_err(|expected| Error::setting(Setting::Pace, expected));
+        edits.pace = self.pace.as_deref().map(pace).transpose()?;
         edits.reverse = self.reverse;
         if edits.map.is_some() && edits.retarget.is_none() {
             return Err(Error::setting(Setting::Map, "it names joints for retarget='display' or body, which are not set"));
@@ -252,6 +257,9 @@ impl Settings {
             Setting::Rotations => text(Some(&self.rotations)),
             Setting::Retarget => text(self.retarget.as_deref()),
             Setting::InPlace => text(self.in_place.as_deref()),
+            Setting::Body => text(path(&self.body).as_deref()),
+            Setting::Turn => number(self.turn),
+            Setting::Pace => text(self.pace.as_deref()),
             Setting::Speed => number(self.speed),
             Setting::Scale => number(self.scale),
             Setting::Smooth => number(self.smooth),

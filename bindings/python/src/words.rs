@@ -19,6 +19,7 @@ pub fn keyword(setting: Setting) -> &'static str {
         Setting::Drop => "drop",
         Setting::Mirror => "mirror",
         Setting::Retarget => "retarget",
+        Setting::Body => "body",
         Setting::Map => "joint_map",
         Setting::With => "with_file",
         Setting::Speed => "speed",
@@ -28,6 +29,8 @@ pub fn keyword(setting: Setting) -> &'static str {
         Setting::Scale => "scale",
         Setting::Smooth => "smooth",
         Setting::InPlace => "in_place",
+        Setting::Turn => "turn",
+        Setting::Pace => "pace",
         Setting::Append => "append",
         Setting::Blend => "blend",
         Setting::Event => "events",
@@ -69,6 +72,8 @@ fn arguments(remedy: Remedy) -> &'static str {
         Remedy::DropScales => "drop=",
         Remedy::MapJoints => "joint_map=",
         Remedy::FindFootsteps => "footsteps=",
+        Remedy::TurnMotion => "turn=",
+        Remedy::ShareBody => "body=",
         Remedy::WriteSegments => "segments=True",
         Remedy::AllowSegments => "keys=False",
         _ => "",
@@ -105,6 +110,13 @@ fn refusal(setting: Setting, value: &str, text: &str, settings: Option<&Settings
         None if value.is_empty() => format!("{name}: {text}"),
         None => format!("{name}={value}: {text}"),
     }
+}
+
+/// The fields of a note about a bank, with `hint` in Python's words.
+pub fn fields_of_bank(note: &Note) -> Map<String, Value> {
+    let mut fields = note.fields();
+    fields.insert("hint".into(), json!(note.remedy.map(hint)));
+    fields
 }
 
 /// A note's fields, with `text` in Python's words, `hint` (what to do, or null) and `setting` as a keyword argument.

@@ -165,6 +165,15 @@ def test_banks_are_packed_and_opened(motions, walk, tmp_path):
     assert (opened["again"].raw() == walk.raw()).all()
     with pytest.raises(KeyError):
         opened["run"]
+    figure = "joint base offset 0 0 0 channels Xposition Zposition\njoint hips parent base offset 0 90 0 channels Xposition Zposition\n"
+    clips = {}
+    for name, base, hips in [("walk", 200, 0), ("kick", 0, 200)]:
+        rows = f"keys linear base\n 0 0 0\n 30 0 {base}\nkeys linear hips\n 0 0 0\n 30 0 {hips}\n"
+        motion = tmp_path / f"{name}.keys"
+        motion.write_text(f"keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n{figure}end parent hips offset 0 40 0\n{rows}")
+        clips[name] = pantin.convert(motion, segments=True)
+    with pytest.warns(pantin.ConversionWarning, match="`walk` by `base`; `kick` by `hips`; put all of the motions on the same body .body=."):
+        pantin.Bank.pack(clips)
     run = pantin.Clip.open(motions / "face/joy.ptn")
     with pytest.raises(pantin.PantinError, match="another rig"):
         pantin.Bank.pack({"walk": walk, "joy": run})

@@ -163,3 +163,21 @@ def test_edits_are_those_of_the_program(bvh, tmp_path):
     subprocess.run([tool, "convert", bvh, "-o", made, *options], check=True)
     clip = pantin.convert(bvh, effort="fast", fps=60, first=10, last=50, mirror=True, events=[(20, "clap")], index=0.2)
     assert bytes(clip) == made.read_bytes()
+
+
+def test_a_motion_turns_and_a_treadmill_gets_a_way(motions):
+    walk = motions / "walk.keys"
+    turned = pantin.convert(walk, effort="fast", turn=180)
+    way = turned.positions()[-1, 0, 2] - turned.positions()[0, 0, 2]
+    assert way < -100
+    spot = pantin.convert(walk, effort="fast", in_place="way", pace="feet")
+    paced = pantin.convert(walk, effort="fast", in_place="way", pace=90)
+    for clip in (spot, paced):
+        assert abs(clip.positions()[-1, 1, 2] - clip.positions()[0, 1, 2] - 120) < 15 and "travel" in kinds(clip)
+    for given, message in [({"turn": 90}, "turn=90: "), ({"pace": "fast"}, 'pace="fast": expected a speed')]:
+        with pytest.raises(pantin.SettingError) as caught:
+            pantin.convert(walk, effort="fast", **given)
+        assert message in str(caught.value) and caught.value.setting == message.split("=")[0]
+    with pytest.raises(pantin.SettingError, match="body=.*not found in the figure") as caught:
+        pantin.convert(arm(), body=walk)
+    assert (caught.value.setting, caught.value.remedy) == ("body", "map-joints")

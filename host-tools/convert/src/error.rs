@@ -63,6 +63,8 @@ pub enum Setting {
     Mirror,
     /// Put the motion on another body.
     Retarget,
+    /// The figure of another file, on which the motion is put.
+    Body,
     /// The names of joints for another body.
     Map,
     /// Scalars of another file.
@@ -81,6 +83,10 @@ pub enum Setting {
     Smooth,
     /// Take the way out.
     InPlace,
+    /// Turn about the vertical.
+    Turn,
+    /// A way for a figure that treads on the spot.
+    Pace,
     /// Motions that follow.
     Append,
     /// The time from one motion to the next.
@@ -141,6 +147,7 @@ impl Setting {
             Setting::Drop => "joints to drop",
             Setting::Mirror => "mirror",
             Setting::Retarget => "retarget",
+            Setting::Body => "body",
             Setting::Map => "joint map",
             Setting::With => "other file",
             Setting::Speed => "speed",
@@ -150,6 +157,8 @@ impl Setting {
             Setting::Scale => "scale",
             Setting::Smooth => "smooth",
             Setting::InPlace => "in place",
+            Setting::Turn => "turn",
+            Setting::Pace => "pace",
             Setting::Append => "append",
             Setting::Blend => "blend",
             Setting::Event => "event",

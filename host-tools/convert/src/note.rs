@@ -47,6 +47,8 @@ pub enum NoteKind {
     Footsteps,
     /// Joints that were put on another body, and how far they are off.
     Retarget,
+    /// The way of a figure, and the joint by which it travels.
+    Travel,
     /// Scalars of another file were added.
     Joined,
     /// A setting that has no effect on this motion.
@@ -65,7 +67,7 @@ pub enum NoteKind {
 
 impl NoteKind {
     /// All kinds.
-    pub const ALL: [NoteKind; 22] = [
+    pub const ALL: [NoteKind; 23] = [
         NoteKind::Unit,
         NoteKind::FrameRate,
         NoteKind::Up,
@@ -81,6 +83,7 @@ impl NoteKind {
         NoteKind::Loop,
         NoteKind::Footsteps,
         NoteKind::Retarget,
+        NoteKind::Travel,
         NoteKind::Joined,
         NoteKind::NoEffect,
         NoteKind::BoundRaised,
@@ -108,6 +111,7 @@ impl NoteKind {
             NoteKind::Loop => "loop",
             NoteKind::Footsteps => "footsteps",
             NoteKind::Retarget => "retarget",
+            NoteKind::Travel => "travel",
             NoteKind::Joined => "joined",
             NoteKind::NoEffect => "no-effect",
             NoteKind::BoundRaised => "bound-raised",
@@ -159,6 +163,10 @@ pub enum Remedy {
     ShareForm,
     /// Find the footsteps of the motions.
     FindFootsteps,
+    /// Turn the motion about the vertical.
+    TurnMotion,
+    /// Put all motions of a bank on one body.
+    ShareBody,
     /// Write segments, which players without feature `keys` play, too.
     WriteSegments,
     /// Allow segments where a motion has no key clip.
@@ -187,6 +195,8 @@ impl Remedy {
             Remedy::MapJoints => "map the names of the joints",
             Remedy::ShareForm => "convert the motions with one form",
             Remedy::FindFootsteps => "find the footsteps of the motions",
+            Remedy::TurnMotion => "turn the motion about the vertical",
+            Remedy::ShareBody => "put all of the motions on the same body",
             Remedy::WriteSegments => "write segments for players without feature `keys`",
             Remedy::AllowSegments => "allow segments",
         }

@@ -1,6 +1,6 @@
 //! Edits of whole motions, as their users call them: what they keep, and what they refuse.
 
-use pantin_convert::edit::{Edits, InPlace};
+use pantin_convert::edit::{Edits, InPlace, Pace};
 use pantin_convert::fk::positions;
 use pantin_convert::import::{Disk, ImportOptions, load};
 use pantin_convert::motion::Motion;
@@ -173,4 +173,206 @@ fn another_motion_goes_on_where_the_figure_stands() {
     assert!(steps(&both) < 1.5 * steps(&run).max(steps(&walk)), "{} {} {}", steps(&both), steps(&walk), steps(&run));
     let other = refused(&Edits::new().append(motions("face/joy.keys")), &walk);
     assert!(other.contains("face/joy.keys") || other.contains("joint"), "{other}");
+}
+
+/// The greatest distance in cm of joints from where a turn about the place of the root in the first frame takes them.
+fn off_turn(a: &Motion, b: &Motion, degrees: f64) -> f64 {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let [x0, _, z0] = positions(&a.rig, &a.values, 0)[0];
+    let turned = |[x, y, z]: [f64; 3]| [x0 + c * (x - x0) + s * (z - z0), y, z0 - s * (x - x0) + c * (z - z0)];
+    let at = |motion: &Motion, frame| positions(&motion.rig, &motion.values, frame);
+    let pairs = (0..a.frames).flat_map(|frame| at(a, frame).into_iter().zip(at(b, frame)).collect::<Vec<_>>());
+    pairs.map(|(a, b)| pantin_convert::fk::distance(turned(a), b)).fold(0.0, f64::max)
+}
+
+/// A figure of a root at the origin, hips that go along z, and legs, all in the order of BVH.
+fn strider() -> Motion {
+    let text = "keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n\
+        joint base offset 0 0 0 channels Xposition Yposition Zposition\n\
+        joint hips parent base offset 0 90 0 channels Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+        joint LeftUpLeg parent hips offset 10 -5 0 channels Xrotation\nend parent LeftUpLeg offset 0 -80 0\n\
+        joint RightUpLeg parent hips offset -10 -5 0 channels Xrotation\nend parent RightUpLeg offset 0 -80 0\n\
+        keys linear base\n 0 0 0 0\n 30 0 0 0\n\
+        keys linear hips\n 0 3 90 0 0 0 10\n 30 5 91 120 4 -3 20\n\
+        keys linear LeftUpLeg\n 0 -20\n 30 20\nkeys linear RightUpLeg\n 0 20\n 30 -20\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strider.keys");
+    std::fs::write(&path, text).unwrap();
+    read(&path)
+}
+
+#[test]
+fn a_turn_takes_every_joint_with_it() {
+    let motion = strider();
+    for degrees in [90.0, -37.5, 180.0, 360.0] {
+        let turned = edited(&Edits::new().turn(degrees), &motion);
+        assert!(off_turn(&motion, &turned, degrees) < 1e-6, "{degrees}: {}", off_turn(&motion, &turned, degrees));
+        assert_eq!(turned.rig, motion.rig, "motions that are turned stay in one bank with others");
+    }
+    // A root that never turns only places the figure: a player would take its direction for the heading, and undo it.
+    let mut rooted = strider();
+    for kind in [
+        pantin_convert::motion::Kind::Zrotation,
+        pantin_convert::motion::Kind::Xrotation,
+        pantin_convert::motion::Kind::Yrotation,
+    ] {
+        rooted.rig.joints[0].kinds.push(kind);
+        rooted.values.insert(3, vec![0.0; rooted.frames]);
+        rooted.keys.insert(3, None);
+    }
+    let turned = edited(&Edits::new().turn(70.0), &rooted);
+    assert!(off_turn(&rooted, &turned, 70.0) < 1e-6 && turned.values[3..6] == rooted.values[3..6]);
+    let error = refused(&Edits::new().turn(90.0), &read(&motions("walk.keys")));
+    assert!(error.contains("turn 90: ") && error.contains("has no channels by which it could follow"), "{error}");
+    assert!(refused(&Edits::new().turn(f64::NAN), &motion).contains("expected a number of degrees"));
+}
+
+#[test]
+fn captures_turn_whatever_their_joints() {
+    let data = std::env::var_os("PANTIN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    for name in ["bvh_bandai1_bow", "bvh_mixamo-beta_run-loop", "bvh_xia_neutral-walk"] {
+        let path = data.join(format!("{name}.bvh"));
+        if !path.exists() {
+            return println!("skipped: no captured clips in {}; set PANTIN_DATA", data.display());
+        }
+        let motion = read(&path);
+        let turned = edited(&Edits::new().turn(75.0), &motion);
+        assert!(off_turn(&motion, &turned, 75.0) < 1e-3, "{name}: {}", off_turn(&motion, &turned, 75.0));
+    }
+}
+
+#[test]
+fn a_pace_moves_a_figure_the_way_it_faces() {
+    let walk = read(&motions("walk.keys"));
+    let spot = edited(&Edits::new().in_place(InPlace::Way), &walk);
+    let place = |motion: &Motion, frame| positions(&motion.rig, &motion.values, frame)[1];
+    let seconds = 159.0 * walk.frame_time;
+    let gone = |motion: &Motion| place(motion, 159)[2] - place(motion, 0)[2] - (place(&spot, 159)[2] - place(&spot, 0)[2]);
+    let paced = edited(&Edits::new().pace("1.2m/s".parse::<Pace>().unwrap()), &spot);
+    assert!((gone(&paced) / seconds - 120.0).abs() < 1.0, "{} cm/s", gone(&paced) / seconds);
+    // A turn before it takes the direction along.
+    let aside = edited(&Edits::new().turn(90.0).pace(Pace::CmPerSecond(50.0)), &strider());
+    let still = edited(&Edits::new().turn(90.0), &strider());
+    let way: Vec<f64> = (0..3).map(|axis| place(&aside, 30)[axis] - place(&still, 30)[axis]).collect();
+    // The strider faces 15 degrees to the left of z in the mean.
+    let facing = f64::to_radians(15.0 + 90.0);
+    assert!((way[0] - 50.0 * facing.sin()).abs() < 1.0 && (way[2] - 50.0 * facing.cos()).abs() < 1.0, "{way:?}");
+}
+
+#[test]
+fn feet_on_the_ground_give_the_pace_of_a_treadmill() {
+    let walk = read(&motions("walk.keys"));
+    let spot = edited(&Edits::new().in_place(InPlace::Way), &walk);
+    let again = Edits::new().pace(Pace::Feet).apply(spot.clone(), &Disk::default()).unwrap();
+    // The walk goes 120 cm in 160 frames of 120 a second.
+    let noted = again.notes.iter().find(|note| note.kind.name() == "travel").unwrap();
+    let speed: f64 = noted.text.split(' ').find_map(|word| word.parse().ok()).unwrap();
+    assert!((speed - 90.0).abs() < 9.0, "{}", noted.text);
+    assert!(apart(&walk, &again.motion) < 12.0, "{}", apart(&walk, &again.motion));
+    // Who walks already has feet that stand.
+    let walking = edited(&Edits::new().pace(Pace::Feet), &walk);
+    assert!(apart(&walk, &walking) < 12.0, "{}", apart(&walk, &walking));
+}
+
+#[test]
+fn a_pace_is_a_speed_or_the_feet() {
+    let read = |text: &str| text.parse::<Pace>();
+    for (text, speed) in [("120", 120.0), ("120cm/s", 120.0), ("1.2 m/s", 120.0), ("-5 mm/s", -0.5), ("10in/s", 25.4)] {
+        assert_eq!(read(text), Ok(Pace::CmPerSecond(speed)), "{text}");
+    }
+    assert_eq!(read("feet"), Ok(Pace::Feet));
+    for text in ["", "fast", "1.2km/h", "nan", "inf", "2000m/s"] {
+        assert!(read(text).unwrap_err().starts_with("expected a speed, like 120cm/s"), "{text}");
+    }
+    let error = refused(&Edits::new().pace(Pace::CmPerSecond(f64::NAN)), &strider());
+    assert!(error.contains("pace: expected a speed of at most 1 km a second"), "{error}");
+}
+
+#[test]
+fn a_wrong_body_is_named_as_such_in_one_line() {
+    let walk = read(&motions("walk.keys"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cube.keys");
+    std::fs::write(&path, "keyframes 1\nfps 30\nframes 3\ncm-per-unit 1\njoint cube offset 0 9 0 channels Yrotation\nend parent cube offset 0 9 0\nkeys linear cube\n 0 0\n 2 9\n").unwrap();
+    let on = |path: &Path| Edits::new().retarget(pantin_convert::edit::Body::Of(path.into()));
+    let error = refused(&on(&path), &walk);
+    assert!(error.contains("body: not found in the body: Hips,") && error.contains("Its joints are cube."), "{error}");
+    assert!(!error.contains('\n') && !error.contains("retarget"), "{error}");
+    let error = refused(&on(&motions("walk.keys")), &read(&path));
+    assert!(
+        error.contains("body: not found in the figure: Hips,") && error.contains("`Hips JOINT`, where JOINT is one of cube"),
+        "{error}"
+    );
+    assert!(!error.contains('\n') && !error.contains("retarget"), "{error}");
+}
+
+#[test]
+fn a_figure_that_was_built_facing_another_way_faces_as_its_body() {
+    // All joints turn about the vertical by their offsets alone, and in the motion.
+    let text = |quarter: bool| {
+        let at = |[x, y, z]: [f64; 3]| if quarter { format!("{z} {y} {}", -x) } else { format!("{x} {y} {z}") };
+        let mut out = String::from("keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n");
+        let mut joint = |name: &str, parent: &str, offset: [f64; 3], channels: &str| {
+            out += &format!("joint {name}{parent} offset {} channels {channels}\n", at(offset));
+        };
+        joint("Hips", "", [0.0, 90.0, 0.0], "Xposition Yposition Zposition Zrotation Xrotation Yrotation");
+        joint("Spine", " parent Hips", [0.0, 20.0, 0.0], "Zrotation Xrotation Yrotation");
+        joint("Head", " parent Spine", [0.0, 40.0, 0.0], "Zrotation Xrotation Yrotation");
+        for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
+            for (name, parent, offset) in [
+                ("Arm", "Spine", [18.0 * x, 30.0, 0.0]),
+                ("ForeArm", "Arm", [28.0 * x, 0.0, 0.0]),
+                ("Hand", "ForeArm", [24.0 * x, 0.0, 0.0]),
+                ("UpLeg", "Hips", [9.0 * x, -5.0, 0.0]),
+                ("Leg", "UpLeg", [0.0, -42.0, 0.0]),
+                ("Foot", "Leg", [0.0, -40.0, 0.0]),
+            ] {
+                let parent = if ["Spine", "Hips"].contains(&parent) { parent.into() } else { format!("{side}{parent}") };
+                joint(&format!("{side}{name}"), &format!(" parent {parent}"), offset, "Zrotation Xrotation Yrotation");
+            }
+        }
+        let way = |frame: usize| at([0.0, 90.0, 4.0 * frame as f64]);
+        out + &format!("keys linear Hips\n 0 {} 0 0 0\n 30 {} 0 0 0\n", way(0), way(30))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let paths = [("ahead.keys", false), ("aside.keys", true)].map(|(name, quarter)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text(quarter)).unwrap();
+        path
+    });
+    let on = Edits::new().retarget(pantin_convert::edit::Body::Of(paths[0].clone()));
+    let [ahead, aside] = paths.each_ref().map(|path| on.apply(read(path), &Disk::default()).unwrap());
+    assert!(apart(&ahead.motion, &aside.motion) < 1e-3, "{}", apart(&ahead.motion, &aside.motion));
+    let noted =
+        |edited: &pantin_convert::edit::Edited| edited.notes.iter().any(|note| note.text.contains("was turned by -90 degrees"));
+    assert!(!noted(&ahead) && noted(&aside), "{:?}", aside.notes);
+    // A motion that goes aside is not turned, and the note says by what it could be.
+    let turned = on.clone().apply(edited(&Edits::new().turn(60.0), &read(&paths[0])), &Disk::default()).unwrap();
+    let said = turned
+        .notes
+        .iter()
+        .any(|note| note.text.contains("faces 60 degrees to the left") && note.text.contains("by -60 degrees"));
+    assert!(said, "{:?}", turned.notes);
+}
+
+#[test]
+fn a_capture_that_runs_gets_no_other_way_by_its_feet() {
+    let data = std::env::var_os("PANTIN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    for (name, speed) in [("bvh_mixamo-beta_run-loop", 420.6), ("bvh_xia_neutral-walk", 98.9)] {
+        let path = data.join(format!("{name}.bvh"));
+        if !path.exists() {
+            return println!("skipped: no captured clips in {}; set PANTIN_DATA", data.display());
+        }
+        let motion = read(&path);
+        assert_eq!(edited(&Edits::new().pace(Pace::Feet), &motion).values, motion.values, "{name}");
+        // As on a treadmill: the feet have about the speed that was taken out.
+        let spot = edited(&Edits::new().in_place(InPlace::Way), &motion);
+        let done = Edits::new().pace(Pace::Feet).apply(spot, &Disk::default()).unwrap();
+        let noted = done.notes.iter().find(|note| note.kind.name() == "travel").unwrap();
+        let found: f64 = noted.text.split(' ').find_map(|word| word.parse().ok()).unwrap();
+        println!("{name}: {found} of {speed} cm a second");
+        assert!((found / speed - 1.0).abs() < 0.15, "{name}: {found}");
+    }
 }

@@ -82,3 +82,24 @@ fn a_perfect_cycle_closes_whatever_its_angles() {
         assert!(cuts.iter().any(|cut| (cut.from, cut.to) == (0, 24) && cut.bound_cm < 1e-3), "{cuts:?}");
     }
 }
+
+/// A cut whose ends are a half turn apart cannot be closed: others are proposed all the same.
+#[test]
+fn a_stretch_that_cannot_be_closed_is_passed_over() {
+    for motion in captured(&["bvh_cmu131_start-walk-stop.bvh"]) {
+        let cuts = find(&motion, &Options::new()).unwrap_or_else(|error| panic!("{error:#}"));
+        assert!(cuts.len() > 1 && cuts.iter().any(|cut| !cut.still), "{cuts:?}");
+    }
+}
+
+/// A figure that stands all the time has a loop for standing, too.
+#[test]
+fn a_figure_that_only_stands_is_said_to_stand() {
+    let idle = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/library/idle.keys");
+    let motion = load(&idle, &ImportOptions::new()).unwrap().motion;
+    let cuts = find(&motion, &Options::new()).unwrap();
+    assert!(cuts.iter().all(|cut| cut.still), "{cuts:?}");
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
+    let cuts = find(&load(&walk, &ImportOptions::new()).unwrap().motion, &Options::new()).unwrap();
+    assert!(cuts.iter().all(|cut| !cut.still), "{cuts:?}");
+}

@@ -18,6 +18,7 @@ pub fn option(setting: Setting) -> &'static str {
         Setting::Drop => "--drop",
         Setting::Mirror => "--mirror",
         Setting::Retarget => "--retarget",
+        Setting::Body => "--body",
         Setting::Map => "--map",
         Setting::With => "--with",
         Setting::Speed => "--speed",
@@ -27,6 +28,8 @@ pub fn option(setting: Setting) -> &'static str {
         Setting::Scale => "--scale",
         Setting::Smooth => "--smooth",
         Setting::InPlace => "--in-place",
+        Setting::Turn => "--turn",
+        Setting::Pace => "--pace",
         Setting::Append => "--append",
         Setting::Blend => "--blend",
         Setting::Event => "--event",
@@ -73,6 +76,10 @@ pub fn advice(remedy: Remedy) -> &'static str {
         Remedy::MapJoints => "--map FILE names them",
         Remedy::ShareForm => "`pantin convert --same-form` gives them one form",
         Remedy::FindFootsteps => "`pantin convert --footsteps` finds them",
+        Remedy::TurnMotion => "--turn turns it",
+        Remedy::ShareBody => {
+            "`pantin convert` with the same --body FILE for all motions (on all lines of a list) puts them on one figure"
+        }
         Remedy::WriteSegments => "--segments writes a clip for players without feature `keys`",
         Remedy::AllowSegments => "without --keys it gets segments",
         other => other.text(),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Iterator, Mapping, Tuple
 
 from . import _pantin
 from ._clip import Clip
 from ._files import StrPath, named, write
+from ._notes import notes_of, warn
 
 
 class Bank(Mapping[str, Clip]):
@@ -26,8 +28,10 @@ class Bank(Mapping[str, Clip]):
 
     @classmethod
     def pack(cls, clips: Mapping[str, Clip]) -> Bank:
-        """Makes a bank of clips of one rig; fails if a clip has another."""
-        return cls(_pantin.pack([(name, bytes(clip)) for name, clip in clips.items()]))
+        """Makes a bank of clips of one rig; fails if a clip has another. Warns (`ConversionWarning`) of clips that travel by different joints."""
+        bank = cls(_pantin.pack([(name, bytes(clip)) for name, clip in clips.items()]))
+        warn(notes_of(json.loads(_pantin.bank_notes(bytes(bank)))), None)
+        return bank
 
     def save(self, path: StrPath) -> None:
         """Writes the bank's file."""

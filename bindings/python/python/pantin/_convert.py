@@ -62,6 +62,8 @@ def convert(
     scale: Optional[float] = None,
     smooth: Optional[float] = None,
     in_place: Optional[str] = None,
+    turn: Optional[float] = None,
+    pace: Union[None, float, str] = None,
     append: Iterable[StrPath] = (),
     blend: Optional[float] = None,
     with_file: Optional[StrPath] = None,
@@ -124,6 +126,9 @@ def convert(
     scale: how many times larger the figure becomes, with its way.
     smooth: frequency in Hz above which motion is smoothed away: it keeps 0.707 of its size there, a quarter at twice the frequency.
     in_place: 'way' takes the figure's horizontal way out, 'way-and-heading' its heading too.
+    turn: degrees by which the whole motion is turned about the vertical, to the figure's left.
+    pace: a way for a figure that treads on the spot, as on a treadmill: cm a second in the direction in which it faces, such text as '1.2m/s', or 'feet': as
+        fast as its feet on the ground slide, the opposite way.
     append: motions that follow, each from where the figure then stands.
     blend: seconds in which a motion goes over to the next one of `append`. Default: 0.25.
     with_file: another file whose scalars are added, such as a face that was recorded with the body.

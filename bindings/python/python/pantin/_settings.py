@@ -34,6 +34,7 @@ NUMBERS = (
     "speed",
     "scale",
     "smooth",
+    "turn",
     "blend",
 )
 """Arguments that are numbers, or None."""
@@ -55,7 +56,7 @@ def settings(arguments: Mapping[str, Any]) -> Dict[str, Any]:
         **given(NUMBERS, float),
         **given(FLAGS, bool),
         **given(FILES, os.fspath),
-        **given(("memory", "animation", "effort"), str),
+        **given(("memory", "animation", "effort", "pace"), str),
         **{name: arguments[name] for name in WORDS},
         **{name: None if arguments[name] is None else _moment(name, arguments[name]) for name in ("first", "last")},
         "events": [(_moment("events", at), str(name)) for at, name in arguments["events"]],

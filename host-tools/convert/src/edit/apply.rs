@@ -9,6 +9,7 @@ use super::in_place::in_place;
 use super::join::join;
 use super::loop_seam;
 use super::mirror::mirror;
+use super::pace::pace;
 use super::pick::pick;
 use super::rename::rename;
 use super::resample::resample;
@@ -16,6 +17,7 @@ use super::retarget;
 use super::reverse::reverse;
 use super::scale::scale;
 use super::smooth::smooth;
+use super::turn::turn;
 use crate::error::{Error, Setting, require};
 use crate::events;
 use crate::expand::expand_within;
@@ -30,6 +32,9 @@ use std::path::{Path, PathBuf};
 
 /// How long a motion goes over to the next one.
 const BLEND_SECONDS: f64 = 0.25;
+
+/// Degrees to the side that a figure faces before it is noted.
+const ASIDE_DEG: f64 = 30.0;
 
 impl Edits {
     /// The frame from which the motion is kept.
@@ -180,6 +185,22 @@ impl Edits {
             done.arms_deg, done.legs_deg, done.ankles_cm
         );
         notes.push(Note::info(NoteKind::Retarget, text).in_file(path));
+        if done.turned_deg != 0 {
+            let text = format!(
+                "body: the rest pose faces another way than the body's, so the motion was turned by {} degrees to the left",
+                done.turned_deg
+            );
+            notes.push(Note::info(NoteKind::Retarget, text).in_file(path));
+        }
+        if let Some(facing) = done.facing_deg.filter(|facing| facing.abs() > ASIDE_DEG && self.turn.is_none()) {
+            let side = if facing > 0.0 { "left" } else { "right" };
+            let text = format!(
+                "body: in the mean the figure faces {:.0} degrees to the {side} of where the body faces at rest; a turn by {:.0} degrees takes it there",
+                facing.abs(),
+                -facing
+            );
+            notes.push(Note::info(NoteKind::Retarget, text).remedy(Remedy::TurnMotion).in_file(path));
+        }
         if !done.limited.is_empty() {
             let text =
                 format!("body: joints that cannot turn in all directions turn as far as they can: {}", done.limited.join(", "));
@@ -191,7 +212,7 @@ impl Edits {
 
     /// The figure of a file: a clip's, the one of a bank's first clip, or a motion's.
     fn read_body(&self, path: &Path, files: &dyn Files) -> Result<Motion, Error> {
-        let wrong = |error: anyhow::Error| Error::of(&error, |text| Error::setting(Setting::Retarget, text));
+        let wrong = |error: anyhow::Error| Error::of(&error, |text| Error::setting(Setting::Body, text));
         let bytes = read_from(files, path).map_err(wrong)?;
         let clip = match pantin::Bank::new_checked(&bytes) {
             Ok(bank) => bank.entries().next().and_then(|entry| bank.open(&entry).ok()),
@@ -222,6 +243,14 @@ impl Edits {
         if let Some(what) = self.in_place {
             *motion = in_place(motion, what)?;
         }
+        if let Some(degrees) = self.turn {
+            *motion = turn(motion, degrees)?;
+        }
+        if let Some(wanted) = self.pace {
+            let (walking, speed) = pace(motion, wanted, self.memory)?;
+            *motion = walking;
+            notes.push(Note::info(NoteKind::Travel, format!("pace: the figure goes {speed:.1} cm a second")));
+        }
         Ok(())
     }
 
@@ -243,6 +272,7 @@ impl Edits {
             scale: self.scale,
             smooth: self.smooth,
             in_place: self.in_place,
+            turn: self.turn,
             fps: Some(1.0 / motion.frame_time),
             memory: self.memory,
             ..Edits::default()

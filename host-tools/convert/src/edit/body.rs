@@ -5,16 +5,19 @@
 //! in the world, whatever the proportions. Joints of one name in both figures (fingers, toes, collars, necks) turn alike; the spine's
 //! share the turn from hips to chest; all others are carried by their parents.
 //!
+//! A source whose rest pose faces another way than the body's is turned by quarters of a turn, so that figures which were built facing different ways face one way.
+//!
 //! The length of the legs scales the way, and the hips' height over the ankles. Near the ground, two-bone inverse kinematics puts an ankle where the source's is
 //! from its thigh, in that scale, and to a height that is off by at most 0.7 cm over the ground of the body, whose height is 0. In the air a leg points where
 //! the source's does. Within 0.7 cm nothing is corrected, because a leg that is nearly straight would have to bend far for it.
 
 use super::display::{Pose, add, aim, dot, pose, stands, subtract, transposed};
-use super::display_names::sources;
+use super::display_names::{sources, sources_of_body};
+use super::facing::{cross, facing};
 use super::rotation::{between, turns_freely, up, write};
 use super::sides::parts;
 use crate::error::{Error, Setting, require};
-use crate::fk::{IDENTITY, Matrix, about, apply, frame_pose, product};
+use crate::fk::{IDENTITY, Matrix, about, apply, frame_pose, from_exponential, product};
 use crate::motion::{Joint, Motion, Rig};
 use anyhow::{Context, Result};
 use std::f64::consts::PI;
@@ -39,6 +42,10 @@ pub struct Embodied {
     pub legs_deg: f64,
     /// The greatest difference in cm between the heights of an ankle near the ground and of the source's, in the scale of the body.
     pub ankles_cm: f64,
+    /// Degrees to the left by which the motion was turned because the source's rest pose faces another way than the body's: -90, 0, 90 or 180.
+    pub turned_deg: i32,
+    /// Degrees to the left by which the figure faces another way in the mean of all frames than the body at rest. `None` if it turns to all sides.
+    pub facing_deg: Option<f64>,
     /// Those of the body's fifteen joints that cannot turn in all directions, by their names.
     pub limited: Vec<String>,
 }
@@ -62,8 +69,7 @@ struct Figure {
 }
 
 impl Figure {
-    fn new(motion: &Motion, map: &str, to_up: &Matrix) -> Result<Figure> {
-        let joints = sources(&motion.rig, map)?;
+    fn new(motion: &Motion, joints: [usize; 15], to_up: &Matrix) -> Result<Figure> {
         let zero = pose(motion, None);
         let upright = stands(&zero, &joints);
         let rest = if upright { zero } else { pose(motion, Some(0)) };
@@ -73,7 +79,7 @@ impl Figure {
             norm(subtract(at(shin), at(thigh))) + norm(subtract(at(foot), at(shin)))
         };
         let leg = LEGS.iter().map(|&leg| length(leg)).sum::<f64>() / 2.0;
-        require!(leg > 0.0, Error::setting(Setting::Retarget, "the figure's legs have no length"));
+        require!(leg > 0.0, Error::setting(Setting::Body, "the figure's legs have no length"));
         Ok(Figure { joints, rest, upright, leg })
     }
 
@@ -118,6 +124,8 @@ struct Plan<'a> {
     vertical: [f64; 3],
     /// The least height of the source's ankles over all frames, and the height of the body's over its ground.
     ankles: [f64; 2],
+    /// Quarters of a turn to the left that the motion is turned by, because the source's rest pose faces another way than the body's.
+    quarters: i32,
 }
 
 /// Puts `motion` on the rig of `body`. `map` is the text of a map file for the source's names, or nothing. Errors name the joints that were not found.
@@ -127,7 +135,15 @@ pub fn onto(motion: &Motion, body: &Motion, map: &str) -> Result<Embodied> {
     let channels = rig.joint_channels();
     let mut values: Vec<Vec<f64>> = vec![vec![0.0; motion.frames]; channels];
     let firsts = rig.first_channels();
-    let mut out = Embodied { motion: motion.clone(), arms_deg: 0.0, legs_deg: 0.0, ankles_cm: 0.0, limited: plan.limited() };
+    let mut out = Embodied {
+        motion: motion.clone(),
+        arms_deg: 0.0,
+        legs_deg: 0.0,
+        ankles_cm: 0.0,
+        turned_deg: 90 * plan.quarters,
+        facing_deg: None,
+        limited: plan.limited(),
+    };
     for frame in 0..motion.frames {
         let source = rotated(pose(motion, Some(frame)), &plan.to_up);
         let (turns, hips) = plan.pose(&source);
@@ -138,6 +154,7 @@ pub fn onto(motion: &Motion, body: &Motion, map: &str) -> Result<Embodied> {
     let mut keys = vec![None; channels];
     keys.extend_from_slice(&motion.keys[motion.rig.joint_channels()..]);
     out.motion = Motion { rig, values, keys, events: motion.events.clone(), ..*motion };
+    out.facing_deg = facing(&out.motion).map(|ahead| plan.left_of_rest(ahead));
     out.motion.origin.error_cm *= plan.scale * body.rig.cm_per_unit / motion.rig.cm_per_unit;
     Ok(out)
 }
@@ -146,8 +163,18 @@ impl<'a> Plan<'a> {
     fn new(motion: &Motion, body: &'a Motion, map: &str) -> Result<Plan<'a>> {
         let vertical = up(&body.rig);
         let to_up = turn_between(up(&motion.rig), vertical);
-        let source = Figure::new(motion, map, &to_up)?;
-        let figure = Figure::new(body, "", &IDENTITY).context("the body")?;
+        let of_source = |error: anyhow::Error| match Error::of(&error, Error::source) {
+            Error::Setting(Setting::Retarget, problem) => Error::Setting(Setting::Body, problem),
+            other => other,
+        };
+        let joints = sources(&motion.rig, map).map_err(of_source)?;
+        let mut source = Figure::new(motion, joints, &to_up)?;
+        let figure = Figure::new(body, sources_of_body(&body.rig)?, &IDENTITY).context("the body")?;
+        let quarters = quarters(&source, &figure, vertical);
+        let to_up = product(&about_vertical_by(vertical, f64::from(quarters) * PI / 2.0), &to_up);
+        if quarters != 0 {
+            source = Figure::new(motion, joints, &to_up)?;
+        }
         let least = (0..motion.frames).flat_map(|frame| {
             let pose = rotated(pose(motion, Some(frame)), &to_up);
             LEGS.map(|leg| dot(pose[source.joints[leg[2]]].1, vertical))
@@ -162,9 +189,15 @@ impl<'a> Plan<'a> {
             to_up,
             vertical,
             ankles,
+            quarters,
         };
         plan.turns = plan.turns(&motion.rig);
         Ok(plan)
+    }
+
+    /// Degrees by which a horizontal direction is to the left of where the body faces at rest.
+    fn left_of_rest(&self, ahead: [f64; 3]) -> f64 {
+        angle_about(self.vertical, cross(self.body.lateral(), self.vertical), ahead).to_degrees()
     }
 
     /// Those of the fifteen joints that cannot turn in all directions.
@@ -425,6 +458,28 @@ fn ankle_height(rig: &Rig, figure: &Figure, vertical: [f64; 3]) -> f64 {
         height(foot) - ends.fold(height(foot), f64::min)
     };
     LEGS.iter().map(|leg| of(figure.joints[leg[2]])).sum::<f64>() / 2.0
+}
+
+/// Quarters of a turn to the left, -1 to 2, that take the source's rest pose to the way in which the body's faces. Rest poses alone say how a figure is built: what
+/// a capture's first frame faces is part of the motion.
+fn quarters(source: &Figure, body: &Figure, vertical: [f64; 3]) -> i32 {
+    if !(source.upright && body.upright) {
+        return 0;
+    }
+    let quarters = (angle_about(vertical, source.lateral(), body.lateral()) / (PI / 2.0)).round() as i32;
+    if quarters == -2 { 2 } else { quarters }
+}
+
+/// The angle in radians about the vertical, counterclockwise seen from above, from one direction to another.
+fn angle_about(vertical: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+    let level = |v: [f64; 3]| subtract(v, vertical.map(|x| x * dot(v, vertical)));
+    let (from, to) = (level(from), level(to));
+    dot(cross(from, to), vertical).atan2(dot(from, to))
+}
+
+/// The turn about the vertical by an angle in radians.
+fn about_vertical_by(vertical: [f64; 3], angle: f64) -> Matrix {
+    from_exponential(vertical.map(|x| x * angle))
 }
 
 /// The turn about the vertical that takes a direction to the heading of another.

@@ -40,16 +40,36 @@ pub fn sources(rig: &Rig, map: &str) -> Result<[usize; 15]> {
     let found = completed(rig, mapped(rig, map)?);
     let missing: Vec<&str> = (0..15).filter(|&index| found[index].is_none()).map(|index| DISPLAY[index].0).collect();
     if !missing.is_empty() {
-        let names: Vec<&str> = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str()).collect();
         let text = format!(
-            "not found in the figure: {}. Name them in a map, a line each like\n  {} JOINT\nwhere JOINT is one of {}",
+            "not found in the figure: {}. Name them in a map, a line each like `{} JOINT`, where JOINT is one of {}",
             missing.join(", "),
             missing[0],
-            names.join(", ")
+            names(rig)
         );
         return Err(Error::setting(Setting::Retarget, text).remedy(Remedy::MapJoints).into());
     }
     Ok(std::array::from_fn(|index| found[index].unwrap_or_default()))
+}
+
+/// The joints of a body that others are put on, for which there is no map.
+pub(crate) fn sources_of_body(rig: &Rig) -> Result<[usize; 15]> {
+    let found = found(rig);
+    let missing: Vec<&str> = (0..15).filter(|&index| found[index].is_none()).map(|index| DISPLAY[index].0).collect();
+    if !missing.is_empty() {
+        let text = format!(
+            "not found in the body: {}. Its joints are {}. Take a figure whose joints have usual names, such as a clip of this one that was converted with other names",
+            missing.join(", "),
+            names(rig)
+        );
+        return Err(Error::setting(Setting::Body, text).into());
+    }
+    Ok(std::array::from_fn(|index| found[index].unwrap_or_default()))
+}
+
+/// The names of all joints, with commas between.
+fn names(rig: &Rig) -> String {
+    let names: Vec<&str> = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str()).collect();
+    names.join(", ")
 }
 
 /// The joint of each of the display's by the usual names.
@@ -155,7 +175,9 @@ mod tests {
         let rig = rig(&names);
         let error = sources(&rig, "").unwrap_err().to_string();
         assert!(
-            error.contains("Hips, RightFoot. ") && error.contains("\n  Hips JOINT\n") && error.contains("one of a, b, c,"),
+            error.contains("Hips, RightFoot. ")
+                && error.contains("a line each like `Hips JOINT`, where JOINT is one of a, b, c,")
+                && !error.contains('\n'),
             "{error}"
         );
         assert_eq!(sources(&rig, "# mine\nHips a # the root\n\nrightfoot d\n").unwrap()[14], 15);

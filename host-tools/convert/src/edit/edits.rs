@@ -1,6 +1,7 @@
 //! All edits of a motion, as settings.
 
 use super::in_place::InPlace;
+use super::pace::Pace;
 use crate::memory::Memory;
 use crate::moment::Moment;
 use crate::motion::Motion;
@@ -55,6 +56,10 @@ pub struct Edits {
     pub smooth: Option<f64>,
     /// What is taken out of a motion that goes somewhere.
     pub in_place: Option<InPlace>,
+    /// Degrees by which the whole motion is turned about the vertical, to the figure's left.
+    pub turn: Option<f64>,
+    /// The way that a figure gets which treads on the spot.
+    pub pace: Option<Pace>,
     /// Other motions that follow, one after the other.
     pub append: Vec<PathBuf>,
     /// Seconds in which a motion goes over to the next of `append`; 0.25 by default.
@@ -169,6 +174,16 @@ impl Edits {
     /// Takes the way out.
     pub fn in_place(self, what: impl Into<Option<InPlace>>) -> Edits {
         Edits { in_place: what.into(), ..self }
+    }
+
+    /// Turns the whole motion about the vertical by degrees, to the figure's left.
+    pub fn turn(self, degrees: impl Into<Option<f64>>) -> Edits {
+        Edits { turn: degrees.into(), ..self }
+    }
+
+    /// Lets a figure that treads on the spot go somewhere.
+    pub fn pace(self, pace: impl Into<Option<Pace>>) -> Edits {
+        Edits { pace: pace.into(), ..self }
     }
 
     /// Adds another motion to the end.

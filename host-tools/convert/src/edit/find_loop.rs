@@ -2,7 +2,7 @@
 //!
 //! A cut from one frame to another loops well if the poses of both are alike, and those of the frames after them. The way that the figure goes on the ground does not count: a loop keeps
 //! it. A stretch in which less happens than in the whole motion is no cycle, since standing still is a perfect loop: of those the best one of a second or more is proposed
-//! apart, as one for standing.
+//! apart, as one for standing. A stretch that cannot be closed, as its ends' angles are too different, is not proposed.
 
 use super::cut;
 use super::loop_seam::{least_seam, places_root};
@@ -36,12 +36,16 @@ const CUTS: usize = 3;
 const SHORTEST: f64 = 0.4;
 /// Part of the mean movement a frame below which a stretch is too still.
 const LIVELY: f64 = 0.6;
+/// Mean speed of the joints in cm a second below which the figure stands, whatever it does elsewhere in the motion.
+const STANDING: f64 = 4.0;
+/// Stretches that are tried at most: some cannot be closed.
+const ATTEMPTS: usize = 24;
 /// Seconds: a shorter stretch is too short to stand in.
 const SHORTEST_STILL: f64 = 1.0;
 /// Poses that are compared with each other at most; of a longer motion, every few frames, and then the frames beside the best.
 const POSES: usize = 1200;
 
-/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere. Seams are measured at the points that `options` bound.
+/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere and none of the others is one. Seams are measured at the points that `options` bound.
 pub fn find(motion: &Motion, options: &Options) -> Result<Vec<Cut>> {
     let bare = unmarked(motion);
     let motion = &bare;
@@ -79,35 +83,50 @@ pub fn find(motion: &Motion, options: &Options) -> Result<Vec<Cut>> {
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found
     };
-    let found = best(shortest, &lively);
-    let near = |a: usize, b: usize| a.abs_diff(b) < shortest / 2 + stride;
-    let mut cuts: Vec<(usize, usize)> = Vec::new();
-    for (_, from, to) in found {
-        if cuts.len() < CUTS && !cuts.iter().any(|&(other, end)| near(from, other) && near(to, end)) {
-            cuts.push((from, to));
-        }
-    }
+    let standing = |from: usize, to: usize| {
+        let most = (still / 2.0).max(STANDING * motion.frame_time);
+        moved[to] - moved[from] < most * (to - from) as f64
+    };
     let around = |frame: usize| frame.saturating_sub(stride - 1)..=(frame + stride - 1).min(motion.frames - 1);
-    let refined = cuts.into_iter().filter_map(|(from, to)| {
+    let refined = |from: usize, to: usize| {
         let pairs = around(from).flat_map(|from| around(to).map(move |to| (from, to)));
         let pairs = pairs.filter(|&(from, to)| to >= from + shortest && lively(from, to));
         pairs.min_by(|a, b| cost(a.0, a.1).total_cmp(&cost(b.0, b.1)))
-    });
-    let cut = |(from, to): (usize, usize)| -> Result<Cut> {
-        let part = cut::cut(motion, Some(from), Some(to))?;
-        let (seam_cm, joint, bound_cm) = least_seam(&part, &Distance::of(options, &part)?.pose, CLOSING)?;
-        // What the file's own rounding takes of a bound.
-        let bound_cm = bound_cm + motion.origin.error_cm;
-        Ok(Cut { from, to, seam_cm, bound_cm, joint, still: !lively(from, to) })
     };
-    let mut cuts: Vec<Cut> = refined.map(cut).collect::<Result<_>>()?;
+    let cut = |(from, to): (usize, usize)| proposal(motion, options, [from, to], standing(from, to));
+    let near = |a: usize, b: usize| a.abs_diff(b) < shortest / 2 + stride;
+    let (mut cuts, mut tried): (Vec<Cut>, Vec<(usize, usize)>) = (Vec::new(), Vec::new());
+    for (_, from, to) in best(shortest, &lively) {
+        if cuts.len() == CUTS || tried.len() == ATTEMPTS {
+            break;
+        }
+        if !tried.iter().any(|&(other, end)| near(from, other) && near(to, end)) {
+            tried.push((from, to));
+            cuts.extend(refined(from, to).map(cut).transpose()?.flatten());
+        }
+    }
     cuts.sort_by(|a, b| a.seam_cm.total_cmp(&b.seam_cm));
-    let shortest = ((SHORTEST_STILL / motion.frame_time).round() as usize).max(2);
-    let standing = |from: usize, to: usize| moved[to] - moved[from] < still / 2.0 * (to - from) as f64;
-    if let Some(&(_, from, to)) = best(shortest, &standing).first() {
-        cuts.push(cut((from, to))?);
+    if !cuts.iter().any(|cut| cut.still) {
+        let shortest = ((SHORTEST_STILL / motion.frame_time).round() as usize).max(2);
+        for (_, from, to) in best(shortest, &standing).into_iter().take(ATTEMPTS) {
+            if let Some(found) = cut((from, to))? {
+                cuts.push(Cut { still: true, ..found });
+                break;
+            }
+        }
     }
     Ok(cuts)
+}
+
+/// The proposal of a first and a last frame; `None` where no bound is enough to close the loop, as between angles that are too different.
+fn proposal(motion: &Motion, options: &Options, [from, to]: [usize; 2], still: bool) -> Result<Option<Cut>> {
+    let part = cut::cut(motion, Some(from), Some(to))?;
+    let Ok((seam_cm, joint, bound_cm)) = least_seam(&part, &Distance::of(options, &part)?.pose, CLOSING) else {
+        return Ok(None);
+    };
+    // What the file's own rounding takes of a bound.
+    let bound_cm = bound_cm + motion.origin.error_cm;
+    Ok(Some(Cut { from, to, seam_cm, bound_cm, joint, still }))
 }
 
 /// The motion as one that is no loop yet.

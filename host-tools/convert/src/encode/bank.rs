@@ -12,6 +12,8 @@ use pantin::{Bank, Clip, Rig};
 use std::collections::HashMap;
 use std::sync::Arc;
 
+pub use super::travel::travel;
+
 /// Most bytes of a clip's name.
 pub const MOST_NAME_BYTES: usize = 255;
 

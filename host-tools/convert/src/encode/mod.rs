@@ -9,4 +9,5 @@ pub mod rans;
 pub mod rig;
 pub mod same_rig;
 pub mod segment;
+mod travel;
 pub mod varint;

@@ -4,6 +4,7 @@ use super::info::memory_fields;
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
+use crate::words;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
 use pantin_animator::machine::{Machine, Table};
@@ -121,6 +122,10 @@ pub fn said(path: &Path, bytes: &[u8], clips: &[Named]) {
                 "warning: the clips `{other}` and `{name}` would both be unpacked to {file}: `pantin unpack --clip` writes one of them"
             );
         }
+    }
+    let travel = Bank::new_checked(bytes).ok().and_then(|bank| bank::travel(&bank, memory::limit()).ok().flatten());
+    if let Some(note) = travel {
+        note!("{}: {}", path.display(), words::line(&note));
     }
     output::report(json!({"clips_in_bank": count, "bytes": len, "rig_bytes": rig}));
     note!("{}: {count} clips, {len} bytes, of which {rig} are the rig", path.display());

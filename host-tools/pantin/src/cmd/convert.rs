@@ -1,6 +1,7 @@
 //! `pantin convert`.
 
 use super::channel_bound::{ChannelBound, above_zero, degrees};
+use super::convert_list::ListEntry;
 use super::edits::Edits;
 use super::encoder::Rotations;
 use super::shard::{self, Shard};
@@ -59,8 +60,8 @@ use std::sync::OnceLock;
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
-    /// with a row of names (.csv, .tsv). For a bank also a list (.list): a motion a line, with its own --name, --animation and changes, as in
-    /// `walk.bvh --from 65 --to 129 --loop`
+    /// with a row of names (.csv, .tsv). For a bank also a list (.list): a motion a line, with its own --name, --animation, --fps, --cm-per-unit,
+    /// --skeleton and changes, as in `walk.bvh --from 65 --to 129 --loop`
     pub(super) input: PathBuf,
     /// More motions, each of which gets a clip of its name in the folder --output, or beside it
     #[arg(value_name = "MOTION", conflicts_with = "list")]
@@ -247,6 +248,14 @@ impl Arguments {
         Arguments { input, more: Vec::new(), output: Some(output), ..self.clone() }
     }
 
+    /// Takes the options of a list's line, which go before those of the command.
+    pub(super) fn take_line(&mut self, line: ListEntry) {
+        (self.edits, self.animation) = (line.edits, line.animation);
+        self.fps = line.fps.or(self.fps);
+        self.cm_per_unit = line.cm_per_unit.or(self.cm_per_unit);
+        self.skeleton = line.skeleton.or(self.skeleton.take());
+    }
+
     /// The same for one file of a folder, without messages.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
         Arguments {
@@ -369,6 +378,9 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
         )?;
     }
     ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle", place());
+    if !cuts.iter().any(|cut| cut.still) {
+        note!("{}: no line for standing: the figure moves all the time, or stands for less than a second", place());
+    }
     Ok(())
 }
 

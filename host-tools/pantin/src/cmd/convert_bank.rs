@@ -152,10 +152,11 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
             input.display()
         );
         let of_line = |(place, line): (String, ListEntry)| {
-            let name = line.name.map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
+            let name = line.name.clone().map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
             let label = format!("{place}: {}", line.motion.display());
-            let mut task = task(line.motion, name, label);
-            (task.arguments.edits, task.arguments.animation, task.line) = (line.edits, line.animation, Some(place));
+            let mut task = task(line.motion.clone(), name, label);
+            task.arguments.take_line(line);
+            task.line = Some(place);
             Ok(task)
         };
         return convert_list::read(input)?.into_iter().map(of_line).collect();

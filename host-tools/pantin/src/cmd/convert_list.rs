@@ -29,6 +29,15 @@ pub struct ListEntry {
     /// Which animation of a file that holds several.
     #[arg(long)]
     pub animation: Option<String>,
+    /// Frames a second of its clip.
+    #[arg(long)]
+    pub fps: Option<f64>,
+    /// Length of its unit in cm.
+    #[arg(long)]
+    pub cm_per_unit: Option<f64>,
+    /// The .asf of an .amc.
+    #[arg(long)]
+    pub skeleton: Option<PathBuf>,
     /// What is done with it.
     #[command(flatten)]
     pub edits: Edits,
@@ -61,6 +70,7 @@ pub fn read(path: &Path) -> Result<Vec<(String, ListEntry)>> {
         ensure!(!line.bounds.is_given(), "{place}: bounds are for all motions: they belong to the command, not to a line");
         line.motion = folder.join(&line.motion);
         line.edits.read_from(folder);
+        line.skeleton = line.skeleton.map(|path| folder.join(path));
         lines.push((place, line));
     }
     ensure!(!lines.is_empty(), "{}: the list names no motion", path.display());

@@ -6,7 +6,7 @@ use pantin_convert::{Moment, edit, events};
 use std::path::{Path, PathBuf};
 
 /// Changes of the motion. They apply in this order: --rate, --speed, --fps, --event, --from and --to, --between, --joints and --drop, --rename, --mirror, --retarget
-/// or --body, --reverse, --scale, --smooth, --in-place, --append, --with, --loop, --footsteps.
+/// or --body, --reverse, --scale, --smooth, --in-place, --turn, --pace, --append, --with, --loop, --footsteps.
 #[derive(clap::Args, Clone, Debug, Default, PartialEq)]
 pub struct Edits {
     /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (case-insensitive). A joint that is not kept is
@@ -65,6 +65,13 @@ pub struct Edits {
     /// Take out the way of the figure, or its heading too
     #[arg(long, value_enum, value_name = "WHAT", num_args = 0..=1, default_missing_value = "way", require_equals = true)]
     in_place: Option<InPlace>,
+    /// Turn the whole motion about the vertical, to the figure's left: for a figure that faces another way than those of other clips
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = angle)]
+    turn: Option<f64>,
+    /// Let a figure that treads on the spot, as on a treadmill, go somewhere: at a speed in the direction in which it faces, as in 120cm/s
+    /// or 1.2m/s, or `feet`: as fast as its feet on the ground slide, the opposite way
+    #[arg(long, value_name = "SPEED|feet", allow_hyphen_values = true, value_parser = str::parse::<edit::Pace>)]
+    pace: Option<edit::Pace>,
     /// Add another motion to the end, where the figure then stands. May be given several times
     #[arg(long, value_name = "FILE")]
     append: Vec<PathBuf>,
@@ -99,6 +106,11 @@ fn rate(text: &str) -> Result<f64, String> {
 fn factor(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| "expected a number above 0".into())
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    let degrees = text.trim().parse().ok().filter(|degrees: &f64| degrees.abs() <= 360.0);
+    degrees.ok_or_else(|| "expected degrees, -360 to 360".into())
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -156,6 +168,7 @@ impl Edits {
             InPlace::Way => edit::InPlace::Way,
             InPlace::WayAndHeading => edit::InPlace::WayAndHeading,
         });
+        (edits.turn, edits.pace) = (self.turn, self.pace);
         (edits.map, edits.with) = (self.map.clone(), self.with.clone());
         edits
     }

@@ -14,7 +14,7 @@ use pantin_images::apng::{self, Apng};
 use pantin_images::gif::{self, Gif};
 use pantin_images::palette::Palette;
 use pantin_images::sheet::{Layout, arrange};
-use pantin_pictures::machine::playback::{Stage, has_machine, joints, play, session};
+use pantin_pictures::machine::playback::{Stage, has_machine, joints, play, session, view_at_start};
 use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ pub struct Arguments {
     /// Colours: a name, or paper and ink, as for pantin render [default: grey]
     #[arg(long)]
     palette: Option<Palette>,
-    /// Side to see the figure from: front, side, left, right, back, quarter, or degrees [default: quarter]
+    /// Side to see the figure from, as it stands at the start: front, side, left, right, back, quarter, or degrees [default: quarter]
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true)]
     view: Option<Side>,
     /// Use a fixed camera that sees the whole session instead of following the figure
@@ -92,10 +92,6 @@ impl Arguments {
 
     fn palette(&self) -> Palette {
         self.palette.clone().unwrap_or_default()
-    }
-
-    fn orbit(&self) -> i16 {
-        self.view.as_ref().map_or(View::default().orbit, |view| view.orbit)
     }
 
     /// Refuses options that an output of this kind cannot use.
@@ -158,7 +154,12 @@ impl<'a> Shown<'a> {
 
     fn stage(&self) -> Result<Stage> {
         let track = if self.arguments.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
-        let view = View { orbit: self.arguments.orbit(), track, ..View::default() };
+        let view = View { track, ..View::default() };
+        let view = match &self.arguments.view {
+            Some(side) => view_at_start(self.bytes, View { orbit: side.orbit, ..view })?,
+            // As boards show it.
+            None => view,
+        };
         Stage::new(self.bytes, self.arguments.size(), view, Some(&self.replay))
     }
 

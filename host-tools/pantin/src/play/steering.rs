@@ -10,7 +10,7 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use pantin_animator::machine::{Cause, FEET, Table};
 use pantin_animator::{Character, Feet, first_clip};
 use pantin_figure::View;
-use pantin_pictures::machine::playback::{Room, Stage};
+use pantin_pictures::machine::playback::{Room, Stage, view_at_start};
 use pantin_pictures::render::figure::MOST_PIXELS;
 use std::time::{Duration, Instant};
 
@@ -325,7 +325,8 @@ impl<'b> Steering<'b> {
             let [across, down] = dots.pixels();
             let size = [columns * across, last * down].map(|pixels| pixels.min(MOST_PIXELS));
             if self.stage.as_ref().is_none_or(|(_, own, view)| (*own, *view) != (size, settings.view)) {
-                self.stage = Some((Stage::new(self.bytes, size, settings.view, None)?, size, settings.view));
+                self.stage =
+                    Some((Stage::new(self.bytes, size, view_at_start(self.bytes, settings.view)?, None)?, size, settings.view));
             }
             if let Some((stage, ..)) = &mut self.stage {
                 let shades = stage.shades(character, settings.ground, settings.in_bits())?;

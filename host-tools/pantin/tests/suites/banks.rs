@@ -445,3 +445,29 @@ fn a_signal_leaves_all_or_none_of_what_belongs_together() {
     assert!((0..CLIPS).all(|number| std::fs::read(path(number)).unwrap() == clip));
     assert_eq!(std::fs::read_dir(folder.path("out")).unwrap().count(), CLIPS, "a temporary file is left");
 }
+
+#[test]
+fn a_line_of_a_list_has_a_frame_rate_of_its_own() {
+    let folder = super::outputs::Folder::new();
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
+    let line = |rest: &str| format!("\"{}\" {rest}\n", walk.display());
+    folder.put("moves.list", [line("--name slow --fps 30"), line("--name plain"), line("--name unit --cm-per-unit 1")].concat());
+    folder.done(&["convert", "moves.list", "-o", "moves.ptb", "--fps", "60"]);
+    let bytes = std::fs::read(folder.path("moves.ptb")).unwrap();
+    let bank = Bank::new_checked(&bytes).unwrap();
+    let rate = |name: &str| (1e9 / f64::from(bank.open(&bank.find(name).unwrap()).unwrap().frame_time_ns())).round();
+    assert_eq!(["slow", "plain", "unit"].map(rate), [30.0, 60.0, 60.0]);
+}
+
+#[test]
+fn a_wrong_body_is_refused_under_its_own_option_in_one_line() {
+    let folder = super::outputs::Folder::new();
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
+    folder.put("cube.keys", "keyframes 1\nfps 30\nframes 3\ncm-per-unit 1\njoint cube offset 0 9 0 channels Yrotation\nend parent cube offset 0 9 0\nkeys linear cube\n 0 0\n 2 9\n");
+    let refused = folder.run(&["convert", walk.to_str().unwrap(), "--body", "cube.keys", "-o", "a.ptn"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("--body: not found in the body: Hips, ") && !said.contains("\\n") && !said.contains("--map"), "{said}");
+    let refused = folder.run(&["convert", "cube.keys", "--body", walk.to_str().unwrap(), "-o", "a.ptn"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("--body: not found in the figure: Hips, ") && said.contains("--map FILE names them"), "{said}");
+}

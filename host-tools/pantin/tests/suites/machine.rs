@@ -410,3 +410,89 @@ fn a_layer_is_checked_as_a_state_is() {
     assert_eq!((table.layers(), row.clip, row.fade_us, row.states, row.joints), (1, 1, 500_000, 1, "*"));
     assert_eq!((table.inputs(), table.input_name(row.input)), (1, "go"));
 }
+
+/// The text of a figure of three joints with a base at the origin; it goes 2 m in a second, by its base or by its hips.
+fn goer(joint: &str) -> String {
+    let places = |own: &str, height: u32| match own == joint {
+        true => format!("keys linear {own}\n 0 0 {height} 0\n 30 0 {height} 200\n"),
+        false => format!("keys linear {own}\n 0 0 {height} 0\n 30 0 {height} 0\n"),
+    };
+    let position = "Xposition Yposition Zposition";
+    let figure = format!(
+        "joint base offset 0 0 0 channels {position}\njoint hips parent base offset 0 90 0 channels {position}\n\
+         joint chest parent hips offset 0 40 0 channels Xrotation\nend parent chest offset 0 40 0\n"
+    );
+    let [base, hips] = [places("base", 0), places("hips", 90)];
+    format!("keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n{figure}{base}{hips}keys linear chest\n 0 0\n 30 20\n")
+}
+
+#[test]
+fn clips_that_travel_by_different_joints_are_warned_of() {
+    let folder = super::outputs::Folder::new();
+    for (name, joint) in [("walk", "base"), ("run", "base"), ("kick", "hips")] {
+        folder.put(&format!("{name}.keys"), goer(joint));
+    }
+    folder.put("hero.toml", "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"kick\", end = true }]\n[[state]]\nname = \"kick\"\n[[any]]\nto = \"walk\"\nend = true\n");
+    let said = |arguments: &[&str]| String::from_utf8(folder.done(arguments).stderr).unwrap();
+    let both = "warning: the clips travel by different joints, so that the figure jumps at changes between them: `walk`, `run` by `base`; `kick` by `hips`; `pantin convert` with the same --body FILE";
+    for bank in [
+        &["convert", "walk.keys", "run.keys", "kick.keys", "--same-form", "-o", "moves.ptb"][..],
+        &["machine", "hero.toml", "--bank", "moves.ptb"],
+    ] {
+        let said = said(bank);
+        assert!(said.contains(both), "{bank:?}: {said}");
+    }
+    let alike = said(&["convert", "walk.keys", "run.keys", "--same-form", "-o", "alike.ptb"]);
+    assert!(!alike.contains("travel"), "{alike}");
+}
+
+fn warnings(text: &str) -> Vec<String> {
+    let bytes = small_bank();
+    let file = Text { name: "a.toml", text };
+    let made = make(&Source::parse(&file).unwrap(), &file, &Bank::new_checked(&bytes).unwrap()).unwrap();
+    made.warnings.into_iter().map(|warning| warning.text).collect()
+}
+
+#[test]
+fn states_between_which_held_inputs_go_back_and_forth_are_warned_of() {
+    let two = |there: &str, back: &str| {
+        format!(
+            "[[parameter]]\nname = \"speed\"\nrange = [0, 100]\n[[state]]\nname = \"walk\"\ntransitions = [{there}]\n\
+             [[state]]\nname = \"run\"\ntransitions = [{back}]\n"
+        )
+    };
+    let to_run = |condition: &str| format!("{{ to = \"run\", {condition} }}");
+    let to_walk = |condition: &str| format!("{{ to = \"walk\", {condition} }}");
+    for (there, back, when) in [
+        ("input = \"fast\"", "input = \"slow\"", Some("while `fast` is held and `slow` is held,")),
+        ("input = \"fast\"", "input = \"fast\"", Some("while `fast` is held,")),
+        ("input = \"fast\"", "released = \"fast\"", None),
+        ("input = \"fast\"", "released = \"go\"", Some("while `fast` is held and `go` is not held,")),
+        ("above = [\"speed\", 40]", "below = [\"speed\", 60]", Some("while `speed` is 41 to 59,")),
+        ("above = [\"speed\", 40]", "below = [\"speed\", 41]", None),
+    ] {
+        let found = warnings(&two(&to_run(there), &to_walk(back)));
+        let found: Vec<&String> = found.iter().filter(|text| text.contains("back and forth")).collect();
+        match when {
+            None => assert!(found.is_empty(), "{there} {back}: {found:?}"),
+            Some(when) => assert!(found.len() == 1 && found[0].contains(when), "{there} {back}: {found:?}"),
+        }
+    }
+    let found = warnings(&two(&to_run("input = \"fast\""), &to_walk("input = \"slow\"")));
+    let told = found.iter().find(|text| text.contains("back and forth")).unwrap();
+    assert!(
+        told.starts_with("line 6: states `walk` and `run`: ") && told.contains("the transition of line 9 leads back"),
+        "{told}"
+    );
+    // A transition before it that is taken under the same condition hides one.
+    let first = "{ to = \"walk\", start = 1, released = \"slow\" }, ";
+    let hidden = two(&to_run("input = \"fast\""), &format!("{first}{}", to_walk("above = [\"speed\", 3]")));
+    assert!(warnings(&hidden).iter().any(|text| text.contains("`slow` is not held")));
+    // A transition from any state leads back, too.
+    let any =
+        |condition: &str| warnings(&format!("{}[[any]]\nto = \"walk\"\n{condition}\n", two(&to_run("input = \"fast\""), "")));
+    let released = any("released = \"power\"");
+    assert!(released.iter().any(|text| text.contains("while `power` is not held and `fast` is held,")), "{released:?}");
+    // An input that leads away from any state is fired.
+    assert!(!any("input = \"halt\"").iter().any(|text| text.contains("back and forth")));
+}

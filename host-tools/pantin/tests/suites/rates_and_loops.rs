@@ -135,6 +135,10 @@ fn a_motion_that_is_one_cycle_is_proposed_whole_and_standing_apart() {
     assert!(from >= 48 && to <= 111 && to - from >= 30, "{still}");
     let said = String::from_utf8(folder.done(&["convert", "rest.keys", "--find-loop"]).stdout).unwrap();
     assert!(said.lines().last().unwrap().ends_with("; the figure stands"), "{said}");
+    // Where there is no such line, a note says why.
+    let noted = |name: &str| String::from_utf8(folder.done(&["convert", name, "--find-loop"]).stderr).unwrap();
+    assert!(noted("cycle.keys").contains("no line for standing: "), "{}", noted("cycle.keys"));
+    assert!(!noted("rest.keys").contains("no line for standing"), "{}", noted("rest.keys"));
 }
 
 /// What `--find-loop` prints of captured motions, run as printed.

@@ -4,7 +4,7 @@ use pantin_animator::machine::{FEET_SECTION, Table};
 use pantin_animator::session::{Fault, Replay, Session};
 use pantin_convert::bank;
 use pantin_figure::View;
-use pantin_pictures::machine::playback::{Stage, joints, play};
+use pantin_pictures::machine::playback::{Stage, joints, play, view_at_start};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
@@ -263,4 +263,30 @@ fn the_first_state_plays_at_its_speed() {
     let (place, frame) = at("-1");
     assert!((14..=15).contains(&frame), "{frame}");
     assert!((place + 15.0).abs() < 0.5, "{place}");
+}
+
+/// Of clips that face different ways the character turns those that do not face as the figure does at the start: the front is where its face is.
+#[test]
+fn the_front_is_that_of_the_figure_at_the_start() {
+    let folder = super::outputs::Folder::new();
+    let walk = motions().join("walk.keys");
+    folder.put(
+        "moves.list",
+        format!("\"{0}\" --name walk\n\"{0}\" --name back --turn 180\n\"{0}\" --name again --turn 180\n", walk.display()),
+    );
+    folder.put(
+        "hero.toml",
+        "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"back\", input = \"a\" }, { to = \"again\", input = \"b\" }]\n[[state]]\nname = \"back\"\n[[state]]\nname = \"again\"\n",
+    );
+    folder.done(&["convert", "moves.list", "--same-form", "-o", "moves.ptb"]);
+    folder.done(&["machine", "hero.toml", "--bank", "moves.ptb", "-o", "hero.ptb"]);
+    let bytes = std::fs::read(folder.path("hero.ptb")).unwrap();
+    let front = View { orbit: 0, ..View::default() };
+    let seen = view_at_start(&bytes, front).unwrap();
+    // A camera's mean is of a few poses.
+    assert!((seen.orbit.rem_euclid(360) - 180).abs() <= 10, "the mean of the clips faces backwards: {}", seen.orbit);
+    // Our character: no clip of it faces another way for long.
+    let own = view_at_start(&BANK, front).unwrap().orbit;
+    assert!(own.abs() <= 10, "{own}");
+    println!("our character: the front is {own} degrees from the mean of all clips");
 }

@@ -3,7 +3,7 @@
 use crate::render::scene::Scene;
 use crate::render::smooth;
 use anyhow::{Context, Result};
-use pantin::{Bank, ChannelState, Clip, Matrix};
+use pantin::{Bank, ChannelState, Clip, Matrix, Player};
 use pantin_animator::machine::{FEET_SECTION, LAYERS, Table, TableError};
 use pantin_animator::session::{Replay, Session};
 use pantin_animator::{Character, Error, Feet, Group, LayerMemory, Mask, Memory, Offset, Placement, first_clip, visit_poses};
@@ -169,6 +169,27 @@ impl Stage {
         let ([width, height], factor) = (self.size, self.factor as f32);
         Ok(smooth::draw(&Scene::of_placed(self.place(character)?, factor), width, height, palette))
     }
+}
+
+/// The view whose sides are those of the figure at the start: front sees its face. The camera of a [`Stage`] takes the mean of the directions in which the figure faces in the
+/// clips of all states; where some face another way, a character turns them so that the figure goes on as it faces.
+pub fn view_at_start(bytes: &[u8], view: View) -> Result<View> {
+    let clip = first_clip(bytes)?;
+    let canvas = Canvas { width: 64, height: 64 };
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut values = vec![0; clip.rig().channels()];
+    let mut player = Player::new(clip, &mut states, &mut values)?;
+    let own = FigureRenderer::<RIG_JOINTS>::of_clip(&mut player, canvas, view).context("this figure cannot be drawn")?;
+    let mean = Stage::new(bytes, [64, 64], View { track: CameraTarget::Follow, ..view }, None)?.renderer.orientation();
+    let ahead = own.orientation().facing.map(f64::from);
+    let [up, facing] = [mean.up, mean.facing].map(|vector| vector.map(f64::from));
+    let left: [f64; 3] = std::array::from_fn(|axis| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        (up[next] * facing[last] - up[last] * facing[next]) / 32_768.0
+    });
+    let along = |other: [f64; 3]| ahead.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+    let degrees = along(left).atan2(along(facing)).to_degrees().round() as i16;
+    Ok(View { orbit: (view.orbit + degrees + 180).rem_euclid(360) - 180, ..view })
 }
 
 /// Plays a session from its start, and passes the character at each picture to `show`.

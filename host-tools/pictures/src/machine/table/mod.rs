@@ -3,6 +3,7 @@
 mod clips;
 mod entries;
 mod feet;
+mod flicker;
 mod names;
 mod rows;
 mod transitions;
@@ -46,6 +47,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let mut maker = Maker::new(source, file, bank)?;
     let rows = maker.rows(source, file)?;
     maker.warn_of_unused(source, file);
+    maker.warn_of_travel(bank)?;
     let table = maker.bytes(source, &rows);
     check(&table, source, file, bank)?;
     maker.check_sync(source, file)?;
@@ -99,11 +101,15 @@ impl<'s, 'b> Maker<'s, 'b> {
         }
         let any = self.transitions(&source.any, source, file, None, &[])?;
         let (mut states, mut transitions) = (Vec::new(), any.clone());
+        let mut of_states = Vec::new();
         for state in &source.states {
             states.push(self.state_row(state, transitions.len(), file)?);
-            transitions.extend(self.transitions(&state.transitions, source, file, Some(state), &any)?);
+            let own = self.transitions(&state.transitions, source, file, Some(state), &any)?;
+            transitions.extend(&own);
+            of_states.push(own);
             self.warn_of_end(state, source, file)?;
         }
+        self.warn_of_flicker(source, file, &any, &of_states);
         self.warn_of_forms(source)?;
         let name = file.name;
         ensure!(transitions.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", transitions.len());

@@ -11,8 +11,8 @@ use toml::Spanned;
 const MOST_FRAMES: u32 = 255;
 const MOST_START: u32 = 254;
 /// The causes in a transition's row that have a threshold.
-const ABOVE: u8 = 4;
-const BELOW: u8 = 5;
+pub(super) const ABOVE: u8 = 4;
+pub(super) const BELOW: u8 = 5;
 
 impl<'s> Maker<'s, '_> {
     /// The index of a transition's parameter. Fails if the parameter's range never reaches the threshold.

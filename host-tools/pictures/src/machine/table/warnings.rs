@@ -3,8 +3,9 @@
 use super::Maker;
 use crate::machine::source::{Source, State, Text};
 use anyhow::Result;
-use pantin_convert::Remedy;
+use pantin::Bank;
 use pantin_convert::import::text::quoted;
+use pantin_convert::{Memory, Remedy};
 
 /// What is odd about a state machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,6 +40,14 @@ impl Maker<'_, '_> {
                 self.warnings.push(Warning::new(text, Some(Remedy::ShareForm)));
                 break;
             }
+        }
+        Ok(())
+    }
+
+    /// Warns if the clips travel by different joints, of which the machine moves one.
+    pub(super) fn warn_of_travel(&mut self, bank: &Bank<'_>) -> Result<()> {
+        if let Some(note) = pantin_convert::bank::travel(bank, Memory::default())? {
+            self.warnings.push(Warning::new(note.text, note.remedy));
         }
         Ok(())
     }
