@@ -1,5 +1,7 @@
 //! Edits of whole motions, as their users call them: what they keep, and what they refuse.
 
+use pantin_convert::Memory;
+use pantin_convert::edit::contacts::{contacts, feet};
 use pantin_convert::edit::{Edits, InPlace, Pace};
 use pantin_convert::fk::positions;
 use pantin_convert::import::{Disk, ImportOptions, load};
@@ -273,6 +275,17 @@ fn feet_on_the_ground_give_the_pace_of_a_treadmill() {
     // Who walks already has feet that stand.
     let walking = edited(&Edits::new().pace(Pace::Feet), &walk);
     assert!(apart(&walk, &walking) < 12.0, "{}", apart(&walk, &walking));
+}
+
+#[test]
+fn feet_that_slide_a_little_on_their_way_are_on_the_ground_and_those_of_a_treadmill_are_not() {
+    let held = |motion: &Motion| contacts(motion, &feet(&motion.rig, [None, None]).unwrap(), Memory::default()).unwrap();
+    let walk = read(&motions("walk.keys"));
+    let spot = edited(&Edits::new().in_place(InPlace::Way), &walk);
+    assert!(held(&spot).is_none());
+    // 20 cm a second more than its feet go.
+    let sliding = held(&edited(&Edits::new().pace(Pace::CmPerSecond(20.0)), &walk)).unwrap();
+    assert!(sliding.iter().all(|foot| !foot.is_empty()));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! When which point of a foot is on the ground: what a character's feet are held by.
 
-use super::footsteps::{FootPoint, NO_FOOT, down, foot, ground, tracks};
+use super::footsteps::{FootPoint, NO_FOOT, down, foot, goes_over, ground, tracks};
 use super::sides::{Part, Side, parts};
 use crate::error::{Error, Setting, require};
 use crate::fk::all_positions;
@@ -34,7 +34,7 @@ pub struct Contact {
     pub to: usize,
 }
 
-/// Horizontal cm a second that the ground moves in a clip that treads on the spot: no foot stands still in the world.
+/// Horizontal cm a second above which the ground moves in a clip that treads on the spot: no foot stands still in the world.
 const TREADMILL: f64 = 15.0;
 /// Seconds by which a footstep's event may be away from where a foot is found to come down.
 const NEAR: f64 = 0.12;
@@ -85,7 +85,7 @@ pub fn contacts(motion: &Motion, feet: &[Foot], memory: Memory) -> Result<Option
     let tracks: Vec<Vec<FootPoint>> = feet.iter().map(|foot| tracks(motion, &poses, foot.ankle)).collect();
     let ground = ground(&tracks);
     let up = motion.rig.up.axis();
-    if ground[(up + 1) % 3].hypot(ground[(up + 2) % 3]) > TREADMILL {
+    if !goes_over(ground[(up + 1) % 3].hypot(ground[(up + 2) % 3]), &poses, motion, TREADMILL) {
         return Ok(None);
     }
     let of = |(foot, points): (&Foot, &Vec<FootPoint>)| {

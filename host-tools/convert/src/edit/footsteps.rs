@@ -115,6 +115,17 @@ pub(super) fn ground(feet: &[Vec<FootPoint>]) -> [f64; 3] {
     })
 }
 
+/// Whether the figure goes over the ground, whose horizontal speed is given in cm a second, and does not tread on the spot: the ground is slower than
+/// `standing`, or than a fourth of the figure's own speed. Feet that run hardly stand.
+pub(super) fn goes_over(ground: f64, poses: &[Vec<[f64; 3]>], motion: &Motion, standing: f64) -> bool {
+    let up = motion.rig.up.axis();
+    let middle = |pose: &[[f64; 3]], axis: usize| pose.iter().map(|place| place[axis]).sum::<f64>() / pose.len() as f64;
+    let (first, last) = (&poses[0], &poses[poses.len() - 1]);
+    let [side, ahead] = [1, 2].map(|turn| (up + turn) % 3).map(|axis| middle(last, axis) - middle(first, axis));
+    let seconds = (poses.len() - 1).max(1) as f64 * motion.frame_time;
+    ground <= standing.max(side.hypot(ahead) / seconds / 4.0)
+}
+
 /// Whether the foot is down, for each frame.
 pub(super) fn down(motion: &Motion, points: &[FootPoint], ground: [f64; 3]) -> Vec<bool> {
     let planted = |track: &FootPoint| -> Vec<bool> {

@@ -3,7 +3,7 @@
 use super::contacts::feet;
 use super::display::{pose, transposed};
 use super::facing::{carriers, facing, norm};
-use super::footsteps::{ground, tracks};
+use super::footsteps::{goes_over, ground, tracks};
 use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, apply};
 use crate::memory::Memory;
@@ -93,7 +93,7 @@ fn moved(motion: &Motion, carrier: usize, step: [f64; 3]) -> Option<Motion> {
     Some(out)
 }
 
-/// Speed in cm a second below which feet on the ground stand. Where the figure goes four times as fast itself, it has its way, too: feet that run hardly stand.
+/// Speed in cm a second below which feet on the ground stand.
 const STANDING: f64 = 3.0;
 
 /// The horizontal velocity in cm a second that lets the feet stand which are on the ground.
@@ -104,13 +104,6 @@ fn feet_velocity(motion: &Motion, memory: Memory) -> Result<[f64; 3]> {
     let tracks: Vec<_> = feet.iter().map(|foot| tracks(motion, &poses, foot.ankle)).collect();
     let mut velocity = ground(&tracks).map(|x| -x);
     velocity[motion.rig.up.axis()] = 0.0;
-    let middle = |pose: &[[f64; 3]]| -> [f64; 3] {
-        std::array::from_fn(|axis| pose.iter().map(|place| place[axis]).sum::<f64>() / pose.len() as f64)
-    };
-    let [first, last] = [&poses[0], &poses[motion.frames - 1]].map(|pose| middle(pose));
-    let seconds = (motion.frames - 1).max(1) as f64 * motion.frame_time;
-    let mut own: [f64; 3] = std::array::from_fn(|axis| (last[axis] - first[axis]) / seconds);
-    own[motion.rig.up.axis()] = 0.0;
-    let walks = norm(velocity) < STANDING.max(norm(own) / 4.0);
-    Ok(if walks { [0.0; 3] } else { velocity })
+    let goes = goes_over(norm(velocity), &poses, motion, STANDING);
+    Ok(if goes { [0.0; 3] } else { velocity })
 }
