@@ -95,13 +95,27 @@ impl Rows {
         self.spans.get((first - self.base) as usize..((last - self.base) as usize).wrapping_add(1)).unwrap_or_default()
     }
 
-    /// Cuts what lies outside another hull off.
-    pub(super) fn clip(&mut self, to: &Rows) {
-        for row in self.first..=self.last {
-            let [low, high] = to.span(row);
-            if let Some(span) = self.spans.get_mut((row - self.base) as usize) {
-                *span = if low > high { EMPTY } else { [span[0].max(low), span[1].min(high)] };
-            }
+    /// Cuts off what lies outside a circle.
+    #[inline(never)]
+    pub(super) fn clip(&mut self, circle: &Circle) {
+        let (pitch, shift) = (16, 4);
+        let &[x, y, r] = circle;
+        let first = ((y - r + pitch / 2 - 1) >> shift).max(self.first);
+        let last = ((y + r - pitch / 2) >> shift).min(self.last);
+        if first > last || r <= 0 {
+            (self.first, self.last) = (0, -1);
+            return;
+        }
+        (self.first, self.last) = (first, last);
+        let used = (first - self.base) as usize..(last - self.base) as usize + 1;
+        let reciprocal = (64 << 16) / r;
+        let mut height = first * pitch + pitch / 2 - y;
+        for span in self.spans.get_mut(used).unwrap_or_default() {
+            let half = half_width(r, reciprocal, height);
+            let own = pixels([(x - half) as i16, (x + half) as i16]);
+            let [low, high] = *span;
+            *span = if low > high { EMPTY } else { [own[0].max(low), own[1].min(high)] };
+            height += pitch;
         }
     }
 
@@ -139,9 +153,7 @@ impl Rows {
         let used = (first - self.base) as usize..(last - self.base) as usize + 1;
         let mut height = first * pitch + pitch / 2 - y;
         for [low, high] in self.spans.get_mut(used).unwrap_or_default() {
-            let index = (height.abs() * reciprocal) >> 16;
-            let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
-            let half = (r * half + 128) >> 8;
+            let half = half_width(r, reciprocal, height);
             *low = (*low).min((x - half) as i16);
             *high = (*high).max((x + half) as i16);
             height += pitch;
@@ -181,6 +193,14 @@ impl Rows {
             self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
         }
     }
+}
+
+/// Half the width of a circle at a height above or below its middle; `reciprocal` is 2^22 by its radius.
+#[inline(always)]
+fn half_width(r: i32, reciprocal: i32, height: i32) -> i32 {
+    let index = (height.abs() * reciprocal) >> 16;
+    let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
+    (r * half + 128) >> 8
 }
 
 /// 2^15 over the root of a square from 1 on, without a division: a number of 15 bits, and by how many bits more it is to be shifted up.

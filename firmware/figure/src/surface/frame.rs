@@ -1,6 +1,6 @@
 //! A framebuffer that knows what changed since it was last sent.
 
-use super::{Bands, Cursor, Surface, Window};
+use super::{Bands, Cursor, Pieces, Surface, Window};
 use crate::ink::Ink;
 use core::convert::Infallible;
 use core::marker::PhantomData;
@@ -42,6 +42,16 @@ pub trait Layout {
             cursor.across(true);
         }
         Self::put(cells, cursor, ink);
+    }
+    /// Sets a span of each row from `first` on; all rows are inside. See [`Surface::spans`].
+    #[inline]
+    fn spans(cells: &mut [Self::Cell], first: usize, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Self::Ink) {
+        for (index, (span, row)) in spans.iter().zip(first..).enumerate() {
+            let mut pieces = Pieces::of(*span, hollow.get(index), Self::WIDTH as i32 - 1);
+            while let Some(piece) = pieces.next() {
+                Self::span(cells, row, piece.map(|x| x as usize), ink);
+            }
+        }
     }
     /// Sets every other pixel of row `y` from column `from` to column `to`; all are inside. See [`Surface::alternate`].
     #[inline]
@@ -208,6 +218,11 @@ impl<L: Layout> Surface for Framebuffer<L> {
     #[inline(always)]
     fn span(&mut self, y: i32, columns: [i32; 2], ink: L::Ink) {
         L::span(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
+    }
+
+    #[inline(never)]
+    fn spans(&mut self, first: i32, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: L::Ink) {
+        L::spans(self.cells.as_mut(), first as usize, spans, hollow, ink);
     }
 
     #[inline(always)]

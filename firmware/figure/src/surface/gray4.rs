@@ -89,6 +89,31 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
         }
     }
 
+    /// What is hollow, too: words that are written anyway.
+    #[inline(always)]
+    fn spans(cells: &mut [u32], first: usize, spans: &[[i16; 2]], _hollow: &[[i16; 2]], ink: Gray4) {
+        let grey = everywhere(ink);
+        let rows = cells.get_mut(first * (WIDTH / 8)..).unwrap_or_default().chunks_exact_mut(WIDTH / 8);
+        for (row, &[low, high]) in rows.zip(spans) {
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
+            if low > high {
+                continue;
+            }
+            let (low, high) = (low as usize, high as usize);
+            let (head, tail) = (u32::MAX >> (low % 8 * 4), u32::MAX << (28 - high % 8 * 4));
+            let Some([left, rest @ ..]) = row.get_mut(low / 8..) else { continue };
+            match (high / 8 - low / 8).checked_sub(1) {
+                None => *left ^= (*left ^ grey) & head & tail,
+                Some(whole) => {
+                    *left ^= (*left ^ grey) & head;
+                    let Some((middle, [right, ..])) = rest.split_at_mut_checked(whole) else { continue };
+                    middle.iter_mut().for_each(|cell| *cell = grey);
+                    *right ^= (*right ^ grey) & tail;
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn blend(cells: &mut [u32], cursor: Nibble<WIDTH>, ink: Gray4, cover: u32) {
         let was = Self::get(cells, cursor).luma();

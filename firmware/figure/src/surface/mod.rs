@@ -54,6 +54,19 @@ pub trait Surface {
         self.put(cursor, ink);
     }
 
+    /// Sets a span of each row from `first` on, as far as it is inside; where its first column is greater than its last one there is none. Pixels
+    /// of `hollow`, which has a span for each of those rows, or none at all, may be left out: they are drawn afterwards.
+    #[inline]
+    fn spans(&mut self, first: i32, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Self::Ink) {
+        let most = self.size()[0] - 1;
+        for (index, (span, row)) in spans.iter().zip(first..).enumerate() {
+            let mut pieces = Pieces::of(*span, hollow.get(index), most);
+            while let Some(piece) = pieces.next() {
+                self.span(row, piece, ink);
+            }
+        }
+    }
+
     /// Sets every other pixel of row `y` from column `from` to column `to`, `from` first. All are inside, and `from` is at most `to`.
     #[inline]
     fn alternate(&mut self, y: i32, [from, to]: [i32; 2], ink: Self::Ink) {
@@ -71,4 +84,45 @@ pub trait Surface {
 
     /// Notes that pixels of a rectangle inside may have changed; ends belong to it.
     fn mark(&mut self, from: [i32; 2], to: [i32; 2]);
+}
+
+/// Spans of at most this many pixels are drawn over what lies below them: two spans beside them would take longer.
+const NARROW: i32 = 8;
+
+/// What is to be drawn of a span.
+struct Pieces {
+    low: i32,
+    high: i32,
+    /// Where the second one begins.
+    second: i32,
+    last: i32,
+}
+
+impl Pieces {
+    /// On columns up to `most`.
+    #[inline(always)]
+    fn of([low, high]: [i16; 2], hollow: Option<&[i16; 2]>, most: i32) -> Self {
+        let (low, last) = (i32::from(low).max(0), i32::from(high).min(most));
+        if let Some(&[from, to]) = hollow {
+            let (from, to) = (i32::from(from), i32::from(to));
+            if to - from >= NARROW {
+                return Pieces { low, high: last.min(from - 1), second: low.max(to + 1), last };
+            }
+        }
+        Pieces { low, high: last, second: i32::MAX, last }
+    }
+
+    /// The next one that is not empty.
+    #[inline(always)]
+    fn next(&mut self) -> Option<[i32; 2]> {
+        while self.low > self.high {
+            if self.second > self.last {
+                return None;
+            }
+            (self.low, self.high, self.second) = (self.second, self.last, i32::MAX);
+        }
+        let piece = [self.low, self.high];
+        self.low = i32::MAX;
+        Some(piece)
+    }
 }

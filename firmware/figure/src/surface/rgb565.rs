@@ -1,7 +1,7 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
 use super::frame::{CALL, fill};
-use super::{Cell, InRows, Layout};
+use super::{Cell, InRows, Layout, NARROW};
 use core::hint::black_box;
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
@@ -28,6 +28,30 @@ impl Cell for Pair {
 /// Red and blue of a colour, and green, apart: each has room above it.
 const RED_BLUE: u32 = 0xf81f;
 const GREEN: u32 = 0x07e0;
+
+/// Draws pixels of a row: whole pairs, four at a time, and halves of the first and the last one.
+#[inline(always)]
+fn line(row: &mut [Pair], [low, high]: [usize; 2], both: Pair) {
+    let Pair([colour, _]) = both;
+    let (odd, mut rest) = (low % 2, row.get_mut(low / 2..).unwrap_or_default());
+    if odd == 1 {
+        let Some((Pair([_, right]), after)) = rest.split_first_mut() else { return };
+        *right = colour;
+        rest = after;
+    }
+    let count = high + 1 - low - odd;
+    let Some((whole, after)) = rest.split_at_mut_checked(count / 2) else { return };
+    let (blocks, single) = whole.as_chunks_mut::<4>();
+    for [a, b, c, d] in blocks {
+        (*a, *b, *c, *d) = (both, both, both, both);
+    }
+    single.iter_mut().for_each(|pair| *pair = both);
+    if count % 2 == 1
+        && let Some(Pair([left, _])) = after.first_mut()
+    {
+        *left = colour;
+    }
+}
 
 impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb565Rows<WIDTH, HEIGHT, PAIRS> {
     type Cell = Pair;
@@ -76,6 +100,30 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
             whole.iter_mut().for_each(|pair| *pair = both);
         } else {
             fill(whole, Pair([colour; 2]));
+        }
+    }
+
+    #[inline(always)]
+    fn spans(cells: &mut [Pair], first: usize, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Rgb565) {
+        let colour = RawU16::from(ink).into_inner();
+        let both = black_box(Pair([colour; 2]));
+        let mut hollow = hollow.iter();
+        let rows = cells.get_mut(first * (WIDTH / 2)..).unwrap_or_default().chunks_exact_mut(WIDTH / 2);
+        for (row, &[low, high]) in rows.zip(spans) {
+            let (mut low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
+            if let Some(&[from, to]) = hollow.next() {
+                let (from, to) = (i32::from(from), i32::from(to));
+                if to - from >= NARROW {
+                    let end = high.min(from - 1);
+                    if low <= end {
+                        line(row, [low as usize, end as usize], both);
+                    }
+                    low = low.max(to + 1);
+                }
+            }
+            if low <= high {
+                line(row, [low as usize, high as usize], both);
+            }
         }
     }
 
