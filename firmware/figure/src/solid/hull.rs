@@ -7,6 +7,41 @@ use pantin_math::rotation::inverse_length;
 /// A circle in sixteenths of a pixel: centre and radius.
 pub(super) type Circle = [i32; 3];
 
+/// What circles cover, in sixteenths of a pixel: least and greatest column and row. The least ones are greater where there is none.
+pub(super) struct Bounds {
+    least: [i32; 2],
+    most: [i32; 2],
+}
+
+impl Bounds {
+    /// Of circles.
+    #[inline(always)]
+    pub(super) fn of(circles: &[Circle]) -> Self {
+        let mut bounds = Bounds { least: [FAR; 2], most: [-FAR; 2] };
+        for &[x, y, r] in circles.iter().filter(|circle| circle[2] > 0) {
+            bounds.least = [bounds.least[0].min(x - r), bounds.least[1].min(y - r)];
+            bounds.most = [bounds.most[0].max(x + r), bounds.most[1].max(y + r)];
+        }
+        bounds
+    }
+
+    /// The first and the last row of a hull with an outline, as far as they are on a surface of `height` rows; the first is greater if none is.
+    #[inline(always)]
+    pub(super) fn rows(&self, flat: bool, outline: i32, height: i32) -> [i32; 2] {
+        let shift = if flat { 6 } else { 4 };
+        [((self.least[1] >> shift) - outline).max(0), ((self.most[1] >> shift) + outline).min(height - 1)]
+    }
+
+    /// The same of columns.
+    #[inline(always)]
+    pub(super) fn columns(&self, outline: i32, width: i32) -> [i32; 2] {
+        [((self.least[0] >> 4) - outline).max(0), ((self.most[0] >> 4) + outline).min(width - 1)]
+    }
+}
+
+/// Farther than any circle reaches.
+const FAR: i32 = 1 << 28;
+
 /// Rows that are drawn at a time, and those above and below them that are known too.
 pub(super) const WINDOW: usize = 64;
 const ROWS: usize = WINDOW + 2 * MARGIN as usize;
@@ -57,19 +92,14 @@ impl Rows {
         self.spans.get((row - self.base) as usize).copied().unwrap_or(EMPTY)
     }
 
-    /// Computes the rows of the hull of `circles` in the window from row `top` on; `around` rows above and below it are empty. With `flat`, heights
+    /// Computes the rows of the hull of `circles`, which are in `bounds`, in the window from row `top` on; `around` rows above and below it are empty. With `flat`, heights
     /// are multiplied by 4: circles become ellipses, as discs on the floor are seen.
     #[inline(never)]
-    pub(super) fn compute(&mut self, circles: &[Circle], top: i32, flat: bool, around: i32) {
+    pub(super) fn compute(&mut self, circles: &[Circle], bounds: &Bounds, top: i32, flat: bool, around: i32) {
         let (pitch, shift) = if flat { (64, 6) } else { (16, 4) };
         self.base = top - MARGIN;
-        let (mut low, mut high) = (i32::MAX, i32::MIN);
-        for [_, y, r] in circles.iter().filter(|circle| circle[2] > 0) {
-            low = low.min(y - r);
-            high = high.max(y + r);
-        }
-        self.first = ((low.saturating_add(pitch / 2 - 1)) >> shift).max(self.base);
-        self.last = (high.saturating_sub(pitch / 2) >> shift).min(self.base + ROWS as i32 - 1);
+        self.first = ((bounds.least[1] + pitch / 2 - 1) >> shift).max(self.base);
+        self.last = ((bounds.most[1] - pitch / 2) >> shift).min(self.base + ROWS as i32 - 1);
         if self.first > self.last {
             (self.first, self.last) = (0, -1);
             return;
@@ -306,7 +336,7 @@ mod tests {
             let mut circle = || [random.i32(0..2000), random.i32(0..900), random.i32(9..150)];
             let circles = [circle(), circle()];
             let mut rows = Rows::new();
-            rows.compute(&circles, 0, false, 0);
+            rows.compute(&circles, &Bounds::of(&circles), 0, false, 0);
             for row in 0..56 {
                 let [first, last] = rows.span(row);
                 for column in 0..125i16 {
@@ -324,8 +354,8 @@ mod tests {
     fn windows_of_a_picture_continue_each_other() {
         let circles = [[300, 100, 90], [900, 3000, 200], [200, 2500, 60]];
         let (mut one, mut other) = (Rows::new(), Rows::new());
-        one.compute(&circles, 0, false, 0);
-        other.compute(&circles, WINDOW as i32, false, 0);
+        one.compute(&circles, &Bounds::of(&circles), 0, false, 0);
+        other.compute(&circles, &Bounds::of(&circles), WINDOW as i32, false, 0);
         for row in WINDOW as i32 - MARGIN..WINDOW as i32 + MARGIN {
             assert_eq!(one.span(row), other.span(row), "{row}");
             assert_ne!(one.span(row), EMPTY, "{row}");

@@ -1,6 +1,6 @@
 //! Draws the rows of a hull: its outline, its fill, and the shaded side of it.
 
-use super::hull::{Circle, EMPTY, Rows, Span, WINDOW};
+use super::hull::{Bounds, Circle, EMPTY, Rows, Span, WINDOW};
 use crate::ink::Ink;
 use crate::surface::Surface;
 
@@ -54,40 +54,28 @@ impl Cut {
         let at = ((x + aside - 8) << 8) + ((slope * (8 - y)) >> 4);
         Cut::Columns { from_left: dx > 0, at, slope }
     }
-}
 
-/// Where an outline begins or ends in a row, walked down row by row: a column with 12 more bits.
-#[derive(Clone, Copy)]
-struct Edge {
-    at: i32,
-    slope: i32,
-    from_left: bool,
-}
-
-impl Edge {
-    /// Takes what is cut off from rows, and goes as many rows down.
+    /// Takes off what is cut off from the spans of rows from `first` on.
     #[inline(always)]
-    fn cut(&mut self, spans: &mut [Span]) {
-        // No edge begins there.
-        if self.at == i32::MIN {
-            return;
-        }
+    fn take_off(&self, first: i32, spans: &mut [Span]) {
+        let &Cut::Columns { from_left, at, slope } = self else { return };
+        let mut at = at.wrapping_add(slope.wrapping_mul(first));
         // Places beyond all spans are like the last ones.
-        if self.from_left {
+        if from_left {
             for [low, _] in spans {
-                let place = self.at >> 12;
+                let place = at >> 12;
                 if place > i32::from(*low) {
                     *low = place.min(i16::MAX.into()) as i16;
                 }
-                self.at = self.at.wrapping_add(self.slope);
+                at = at.wrapping_add(slope);
             }
         } else {
             for [_, high] in spans {
-                let place = self.at >> 12;
+                let place = at >> 12;
                 if place < i32::from(*high) {
                     *high = place.max(i16::MIN.into()) as i16;
                 }
-                self.at = self.at.wrapping_add(self.slope);
+                at = at.wrapping_add(slope);
             }
         }
     }
@@ -106,29 +94,6 @@ pub(super) struct Outline<I> {
 const WIDEST: usize = 8;
 
 impl<I> Outline<I> {
-    /// Edges from a row on.
-    #[inline(always)]
-    fn edges(&self, row: i32) -> [Edge; 2] {
-        self.cuts.map(|cut| match cut {
-            Cut::Columns { from_left, at, slope } => Edge { at: at.wrapping_add(slope.wrapping_mul(row)), slope, from_left },
-            _ => Edge { at: i32::MIN, slope: 0, from_left: true },
-        })
-    }
-
-    /// The first and the last row that are not cut off as a whole.
-    #[inline(always)]
-    fn rows(&self) -> [i32; 2] {
-        let mut rows = [i32::MIN, i32::MAX];
-        for cut in &self.cuts {
-            match *cut {
-                Cut::Rows { above: true, row } => rows[0] = rows[0].max(row),
-                Cut::Rows { above: false, row } => rows[1] = rows[1].min(row),
-                _ => {}
-            }
-        }
-        rows
-    }
-
     /// Pixels that the outline reaches to the side of a row that is 1, 2, ... rows away.
     fn reaches(&self) -> [i32; WIDEST] {
         let mut reach = self.width;
@@ -161,12 +126,12 @@ impl<'a, S: Surface> Painter<'a, S> {
     /// Draws the hull of circles; `flat` ones as [`Rows::compute`] says.
     #[inline(never)]
     pub(super) fn hull(&mut self, circles: &[Circle], flat: bool, outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
-        let [width, height] = self.surface.size();
-        let [first, last] = rows_of(circles, flat, outline.width, height);
-        let columns = columns_of(circles, outline.width, width);
+        let bounds = Bounds::of(circles);
+        let [first, last] = bounds.rows(flat, outline.width, self.surface.size()[1]);
+        let columns = bounds.columns(outline.width, self.surface.size()[0]);
         let mut top = first;
         while top <= last {
-            self.rows.compute(circles, top, flat, 2 * outline.width);
+            self.rows.compute(circles, &bounds, top, flat, 2 * outline.width);
             paint(self, top, columns, outline, fill);
             top += WINDOW as i32;
         }
@@ -175,45 +140,22 @@ impl<'a, S: Surface> Painter<'a, S> {
     /// Fills what of a circle lies within the hull that was drawn last, which is `hull`.
     #[inline(never)]
     pub(super) fn clipped(&mut self, circle: Circle, hull: &[Circle], fill: &Fill<S::Ink>) {
-        let [width, height] = self.surface.size();
-        let [first, last] = rows_of(&[circle], false, 0, height);
-        let columns = columns_of(&[circle], 0, width);
+        let (bounds, around) = (Bounds::of(&[circle]), Bounds::of(hull));
+        let [first, last] = bounds.rows(false, 0, self.surface.size()[1]);
+        let columns = bounds.columns(0, self.surface.size()[0]);
         let mut top = first;
         // Most heads are within one window, whose rows are known.
-        let known = rows_of(hull, false, 0, i32::MAX);
+        let known = around.rows(false, 0, i32::MAX);
         let known = self.rows.first <= known[0] + 1 && self.rows.last >= known[1] - 1;
         while top <= last {
             if !known {
-                self.rows.compute(hull, top, false, 0);
+                self.rows.compute(hull, &around, top, false, 0);
             }
             self.rows.clip(&circle);
             paint(self, top, columns, &Outline { ink: S::Ink::DARK, width: 0, cuts: [Cut::None; 2] }, fill);
             top += WINDOW as i32;
         }
     }
-}
-
-/// The first and the last row of a hull and its outline, as far as they are on a surface of `height` rows.
-#[inline(always)]
-fn rows_of(circles: &[Circle], flat: bool, outline: i32, height: i32) -> [i32; 2] {
-    let shift = if flat { 6 } else { 4 };
-    let (mut low, mut high) = (i32::MAX, i32::MIN);
-    for [_, y, r] in circles {
-        low = low.min(y - r);
-        high = high.max(y + r);
-    }
-    [((low >> shift) - outline).max(0), ((high >> shift) + outline).min(height - 1)]
-}
-
-/// The first and the last column of a hull and its outline, as far as they are on a surface of `width` columns; the first is greater if none is.
-#[inline(always)]
-fn columns_of(circles: &[Circle], outline: i32, width: i32) -> [i32; 2] {
-    let (mut low, mut high) = (i32::MAX, i32::MIN);
-    for [x, _, r] in circles {
-        low = low.min(x - r);
-        high = high.max(x + r);
-    }
-    [((low >> 4) - outline).max(0), ((high >> 4) + outline).min(width - 1)]
 }
 
 /// Rows whose outlines or cores are worked out before they are drawn: loops that do one thing keep in registers what they need.
@@ -258,10 +200,14 @@ fn draw_outline<S: Surface>(
     outline: &Outline<S::Ink>,
     spans: &mut [Span; AT_ONCE],
 ) {
-    let [from, to] = outline.rows();
-    let (mut first, last) = (first.max(from), last.min(to));
-    let mut edges = outline.edges(first);
-    let cut = edges.iter().any(|edge| edge.at != i32::MIN);
+    let (mut first, mut last) = (first, last);
+    for cut in &outline.cuts {
+        match *cut {
+            Cut::Rows { above: true, row } => first = first.max(row),
+            Cut::Rows { above: false, row } => last = last.min(row),
+            _ => {}
+        }
+    }
     let wide = outline.width.min(WIDEST as i32);
     let reaches = if wide == 1 { [0; WIDEST] } else { outline.reaches() };
     while first <= last {
@@ -273,9 +219,7 @@ fn draw_outline<S: Surface>(
         } else {
             thick(around, wide, &reaches, spans);
         }
-        if cut {
-            edges.iter_mut().for_each(|edge| edge.cut(spans));
-        }
+        outline.cuts.iter().for_each(|cut| cut.take_off(first, spans));
         surface.spans(first, spans, around.get(wide as usize..).unwrap_or_default(), outline.ink);
         first += count;
     }
