@@ -125,6 +125,13 @@ impl Rows {
         self.spans.get((first - self.base) as usize..((last - self.base) as usize).wrapping_add(1)).unwrap_or_default()
     }
 
+    /// Those spans to be changed.
+    #[inline(always)]
+    fn stretch_mut(&mut self, first: i32, last: i32) -> impl Iterator<Item = &mut Span> {
+        let count = (last - first + 1) as usize;
+        self.spans.get_mut((first - self.base) as usize..).unwrap_or_default().iter_mut().take(count)
+    }
+
     /// Cuts off what lies outside a circle.
     #[inline(never)]
     pub(super) fn clip(&mut self, circle: &Circle) {
@@ -137,10 +144,9 @@ impl Rows {
             return;
         }
         (self.first, self.last) = (first, last);
-        let used = (first - self.base) as usize..(last - self.base) as usize + 1;
         let reciprocal = (64 << 16) / r;
         let mut height = first * pitch + pitch / 2 - y;
-        for span in self.spans.get_mut(used).unwrap_or_default() {
+        for span in self.stretch_mut(first, last) {
             let half = half_width(r, reciprocal, height);
             let own = pixels([(x - half) as i16, (x + half) as i16]);
             let [low, high] = *span;
@@ -153,8 +159,7 @@ impl Rows {
     /// both with 12 more bits.
     #[inline(always)]
     fn edge(&mut self, from: i32, to: i32, left: bool, mut x: i32, slope: i32) {
-        let used = (from - self.base) as usize..((to - self.base) as usize).wrapping_add(1);
-        let spans = self.spans.get_mut(used).unwrap_or_default();
+        let spans = self.stretch_mut(from, to);
         if left {
             for [low, _] in spans {
                 *low = (*low).min((x >> 12) as i16);
@@ -180,9 +185,8 @@ impl Rows {
         if first > last {
             return;
         }
-        let used = (first - self.base) as usize..(last - self.base) as usize + 1;
         let mut height = first * pitch + pitch / 2 - y;
-        for [low, high] in self.spans.get_mut(used).unwrap_or_default() {
+        for [low, high] in self.stretch_mut(first, last) {
             let half = half_width(r, reciprocal, height);
             *low = (*low).min((x - half) as i16);
             *high = (*high).max((x + half) as i16);
@@ -192,7 +196,8 @@ impl Rows {
 
     /// The two outer tangents of two circles; none if one lies within the other.
     #[inline(never)]
-    fn tangents(&mut self, &[x0, y0, r0]: &Circle, &[x1, y1, r1]: &Circle, pitch: i32, shift: u32) {
+    fn tangents(&mut self, one: &Circle, other: &Circle, pitch: i32, shift: u32) {
+        let (&[x0, y0, r0], &[x1, y1, r1]) = (one, other);
         let (dx, dy, k) = (x1 - x0, y1 - y0, r0 - r1);
         if r0 <= 0 || r1 <= 0 || dx.abs() >= FARTHEST || dy.abs() >= FARTHEST {
             return;
@@ -203,25 +208,29 @@ impl Rows {
         }
         // Along the line through both middles: a vector 2^15 long, and what the tangents lean towards it, as a sine and a cosine.
         let (inverse, up) = inverse_root(square);
-        let [ux, uy, sine] = [dx, dy, k].map(|part| (part * inverse) >> (15 - up));
+        let [ux, uy, sine] = [(dx * inverse) >> (15 - up), (dy * inverse) >> (15 - up), (k * inverse) >> (15 - up)];
         let cosine = root_of_fraction(((1 << 30) - sine * sine) as u32);
-        for sign in [1, -1] {
-            let cosine = sign * cosine;
-            let normal = [(sine * ux - cosine * uy) >> 15, (sine * uy + cosine * ux) >> 15];
-            let touch = |x: i32, y: i32, r: i32| [x + ((r * normal[0]) >> 15), y + ((r * normal[1]) >> 15)];
-            let (mut from, mut to) = (touch(x0, y0, r0), touch(x1, y1, r1));
-            if from[1] > to[1] {
-                (from, to) = (to, from);
-            }
-            let first = ((from[1] + pitch / 2 - 1) >> shift).max(self.first);
-            let last = ((to[1] - pitch / 2) >> shift).min(self.last);
-            if first > last || to[1] <= from[1] {
-                continue;
-            }
-            let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]).max(1);
-            let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
-            self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
+        let (along, across) = ([sine * ux, sine * uy], [cosine * uy, cosine * ux]);
+        self.tangent([one, other], [(along[0] - across[0]) >> 15, (along[1] + across[1]) >> 15], pitch, shift);
+        self.tangent([one, other], [(along[0] + across[0]) >> 15, (along[1] - across[1]) >> 15], pitch, shift);
+    }
+
+    /// The tangent of two circles whose normal is given, 2^15 long.
+    #[inline(never)]
+    fn tangent(&mut self, circles: [&Circle; 2], normal: [i32; 2], pitch: i32, shift: u32) {
+        let touch = |&[x, y, r]: &Circle| [x + ((r * normal[0]) >> 15), y + ((r * normal[1]) >> 15)];
+        let (mut from, mut to) = (touch(circles[0]), touch(circles[1]));
+        if from[1] > to[1] {
+            (from, to) = (to, from);
         }
+        let first = ((from[1] + pitch / 2 - 1) >> shift).max(self.first);
+        let last = ((to[1] - pitch / 2) >> shift).min(self.last);
+        if first > last || to[1] <= from[1] {
+            return;
+        }
+        let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]).max(1);
+        let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
+        self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
     }
 }
 
@@ -256,9 +265,6 @@ const FARTHEST: i32 = 1 << 15;
 /// The pixels whose middles are between two places in sixteenths; a narrow span has the pixel in its middle.
 #[inline(always)]
 fn pixels([low, high]: Span) -> Span {
-    if low > high {
-        return EMPTY;
-    }
     let (low, high) = (i32::from(low), i32::from(high));
     let (first, last) = ((low + 7) >> 4, (high - 8) >> 4);
     if first <= last {

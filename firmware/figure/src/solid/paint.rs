@@ -209,7 +209,6 @@ fn draw_outline<S: Surface>(
         }
     }
     let wide = outline.width.min(WIDEST as i32);
-    let reaches = if wide == 1 { [0; WIDEST] } else { outline.reaches() };
     while first <= last {
         let count = (last - first + 1).min(AT_ONCE as i32);
         let around = rows.stretch(first - wide, first + count - 1 + wide);
@@ -217,7 +216,7 @@ fn draw_outline<S: Surface>(
         if wide == 1 {
             thin(around, spans);
         } else {
-            thick(around, wide, &reaches, spans);
+            thick(around, outline, spans);
         }
         outline.cuts.iter().for_each(|cut| cut.take_off(first, spans));
         surface.spans(first, spans, around.get(wide as usize..).unwrap_or_default(), outline.ink);
@@ -240,12 +239,13 @@ fn thin(around: &[Span], spans: &mut [Span]) {
 
 /// What one of more pixels covers.
 #[inline(always)]
-fn thick(around: &[Span], wide: i32, reaches: &[i32; WIDEST], spans: &mut [Span]) {
+fn thick<I>(around: &[Span], outline: &Outline<I>, spans: &mut [Span]) {
+    let (wide, reaches) = (outline.width.min(WIDEST as i32), outline.reaches());
     for (window, span) in around.windows(2 * wide as usize + 1).zip(spans) {
         let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
         let own = wide_of(middle);
         let (mut low, mut high) = (own[0] - wide, own[1] + wide);
-        for ((above, below), reach) in above.iter().rev().zip(below).zip(reaches) {
+        for ((above, below), reach) in above.iter().rev().zip(below).zip(&reaches) {
             low = low.min(i32::from(above[0].min(below[0])) - reach);
             high = high.max(i32::from(above[1].max(below[1])) + reach);
         }

@@ -101,15 +101,18 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
             }
             let (low, high) = (low as usize, high as usize);
             let (head, tail) = (u32::MAX >> (low % 8 * 4), u32::MAX << (28 - high % 8 * 4));
-            let Some([left, rest @ ..]) = row.get_mut(low / 8..) else { continue };
-            match (high / 8 - low / 8).checked_sub(1) {
-                None => *left ^= (*left ^ grey) & head & tail,
-                Some(whole) => {
-                    *left ^= (*left ^ grey) & head;
-                    let Some((middle, [right, ..])) = rest.split_at_mut_checked(whole) else { continue };
-                    middle.iter_mut().for_each(|cell| *cell = grey);
-                    *right ^= (*right ^ grey) & tail;
-                }
+            let (from, to) = (low / 8, high / 8);
+            let Some(left) = row.get_mut(from) else { continue };
+            if from == to {
+                *left ^= (*left ^ grey) & head & tail;
+                continue;
+            }
+            *left ^= (*left ^ grey) & head;
+            if to - from > 1 {
+                row.get_mut(from + 1..to).unwrap_or_default().iter_mut().for_each(|cell| *cell = grey);
+            }
+            if let Some(right) = row.get_mut(to) {
+                *right ^= (*right ^ grey) & tail;
             }
         }
     }
