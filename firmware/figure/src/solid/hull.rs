@@ -114,7 +114,7 @@ impl Rows {
                 self.tangents(circle, other, pitch, shift);
             }
         }
-        for span in self.spans.get_mut(from..to + 1).unwrap_or_default() {
+        for span in self.stretch_mut(self.first, self.last) {
             *span = pixels(*span);
         }
     }
@@ -122,14 +122,15 @@ impl Rows {
     /// The spans from a row to another one; both are in the window with its margins, and within [`MARGIN`] of the hull.
     #[inline(always)]
     pub(super) fn stretch(&self, first: i32, last: i32) -> &[Span] {
-        self.spans.get((first - self.base) as usize..((last - self.base) as usize).wrapping_add(1)).unwrap_or_default()
+        let from = self.spans.get((first - self.base) as usize..).unwrap_or_default();
+        from.get(..(last - first + 1) as usize).unwrap_or_default()
     }
 
     /// Those spans to be changed.
     #[inline(always)]
-    fn stretch_mut(&mut self, first: i32, last: i32) -> impl Iterator<Item = &mut Span> {
-        let count = (last - first + 1) as usize;
-        self.spans.get_mut((first - self.base) as usize..).unwrap_or_default().iter_mut().take(count)
+    fn stretch_mut(&mut self, first: i32, last: i32) -> &mut [Span] {
+        let from = self.spans.get_mut((first - self.base) as usize..).unwrap_or_default();
+        from.get_mut(..(last - first + 1) as usize).unwrap_or_default()
     }
 
     /// Cuts off what lies outside a circle.

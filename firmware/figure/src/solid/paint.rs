@@ -268,6 +268,9 @@ fn draw_fill<S: Surface>(
         let cores = cores.get_mut(..count as usize).unwrap_or_default();
         match *fill {
             Fill::Plain(ink) => surface.spans(first, own, &[], ink),
+            // Where there are none, no code for them.
+            Fill::Checkered(..) | Fill::Dotted(..) | Fill::Rimmed(..) if S::Ink::TONES => {}
+            Fill::Shaded(..) if !S::Ink::SHADED => {}
             Fill::Checkered(ink, other) | Fill::Dotted(ink, other) => {
                 surface.spans(first, own, &[], other);
                 let most = surface.size()[0] - 1;
