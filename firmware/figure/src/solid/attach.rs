@@ -2,12 +2,11 @@
 
 use super::hull::Circle;
 use super::joints::{Joints, Limb};
-use super::look::{Anchor, Attachment, MOST_CIRCLES, Radius};
+use super::look::{Anchor, Attachment, Radius};
 use super::parts::{Body, Part, Place, between};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
 use crate::renderer::FigureRenderer;
 use crate::rotation::{RotationBackend, Vector};
-use heapless::Vec;
 use pantin_math::vector::{cross, direction, sub};
 
 /// An anchor on the display. Axes are right, down and away.

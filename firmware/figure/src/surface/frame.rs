@@ -1,6 +1,6 @@
 //! A framebuffer that knows what changed since it was last sent.
 
-use super::{Bands, Cursor, Pieces, Surface, Window};
+use super::{Bands, Cursor, Surface, Window};
 use crate::ink::Ink;
 use core::convert::Infallible;
 use core::marker::PhantomData;
@@ -43,13 +43,13 @@ pub trait Layout {
         }
         Self::put(cells, cursor, ink);
     }
-    /// Sets a span of each row from `first` on; all rows are inside. See [`Surface::spans`].
+    /// Sets a span of each row from `first` on, as far as it is inside; all rows are. See [`Surface::spans`].
     #[inline]
-    fn spans(cells: &mut [Self::Cell], first: usize, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Self::Ink) {
-        for (index, (span, row)) in spans.iter().zip(first..).enumerate() {
-            let mut pieces = Pieces::of(*span, hollow.get(index), Self::WIDTH as i32 - 1);
-            while let Some(piece) = pieces.next() {
-                Self::span(cells, row, piece.map(|x| x as usize), ink);
+    fn spans(cells: &mut [Self::Cell], first: usize, spans: &[[i16; 2]], ink: Self::Ink) {
+        for (&[low, high], row) in spans.iter().zip(first..) {
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(Self::WIDTH as i32 - 1));
+            if low <= high {
+                Self::span(cells, row, [low as usize, high as usize], ink);
             }
         }
     }
@@ -220,9 +220,10 @@ impl<L: Layout> Surface for Framebuffer<L> {
         L::span(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
     }
 
+    /// What is hollow, too: a second span in a row takes as long as 40 pixels.
     #[inline(never)]
-    fn spans(&mut self, first: i32, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: L::Ink) {
-        L::spans(self.cells.as_mut(), first as usize, spans, hollow, ink);
+    fn spans(&mut self, first: i32, spans: &[[i16; 2]], _hollow: &[[i16; 2]], ink: L::Ink) {
+        L::spans(self.cells.as_mut(), first as usize, spans, ink);
     }
 
     #[inline(always)]

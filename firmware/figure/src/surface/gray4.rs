@@ -89,9 +89,9 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
         }
     }
 
-    /// What is hollow, too: words that are written anyway.
+    /// Parts of the first and the last word, and what lies between them.
     #[inline(always)]
-    fn spans(cells: &mut [u32], first: usize, spans: &[[i16; 2]], _hollow: &[[i16; 2]], ink: Gray4) {
+    fn spans(cells: &mut [u32], first: usize, spans: &[[i16; 2]], ink: Gray4) {
         let grey = everywhere(ink);
         let rows = cells.get_mut(first * (WIDTH / 8)..).unwrap_or_default().chunks_exact_mut(WIDTH / 8);
         for (row, &[low, high]) in rows.zip(spans) {

@@ -60,9 +60,18 @@ pub trait Surface {
     fn spans(&mut self, first: i32, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Self::Ink) {
         let most = self.size()[0] - 1;
         for (index, (span, row)) in spans.iter().zip(first..).enumerate() {
-            let mut pieces = Pieces::of(*span, hollow.get(index), most);
-            while let Some(piece) = pieces.next() {
-                self.span(row, piece, ink);
+            let (mut low, high) = (i32::from(span[0]).max(0), i32::from(span[1]).min(most));
+            if let Some(&[from, to]) = hollow.get(index)
+                && i32::from(to) - i32::from(from) >= NARROW
+            {
+                let end = high.min(i32::from(from) - 1);
+                if low <= end {
+                    self.span(row, [low, end], ink);
+                }
+                low = low.max(i32::from(to) + 1);
+            }
+            if low <= high {
+                self.span(row, [low, high], ink);
             }
         }
     }
@@ -86,43 +95,5 @@ pub trait Surface {
     fn mark(&mut self, from: [i32; 2], to: [i32; 2]);
 }
 
-/// Spans of at most this many pixels are drawn over what lies below them: two spans beside them would take longer.
+/// Spans of at most this many pixels are drawn over: two spans beside them would take longer.
 const NARROW: i32 = 8;
-
-/// What is to be drawn of a span.
-struct Pieces {
-    low: i32,
-    high: i32,
-    /// Where the second one begins.
-    second: i32,
-    last: i32,
-}
-
-impl Pieces {
-    /// On columns up to `most`.
-    #[inline(always)]
-    fn of([low, high]: [i16; 2], hollow: Option<&[i16; 2]>, most: i32) -> Self {
-        let (low, last) = (i32::from(low).max(0), i32::from(high).min(most));
-        if let Some(&[from, to]) = hollow {
-            let (from, to) = (i32::from(from), i32::from(to));
-            if to - from >= NARROW {
-                return Pieces { low, high: last.min(from - 1), second: low.max(to + 1), last };
-            }
-        }
-        Pieces { low, high: last, second: i32::MAX, last }
-    }
-
-    /// The next one that is not empty.
-    #[inline(always)]
-    fn next(&mut self) -> Option<[i32; 2]> {
-        while self.low > self.high {
-            if self.second > self.last {
-                return None;
-            }
-            (self.low, self.high, self.second) = (self.second, self.last, i32::MAX);
-        }
-        let piece = [self.low, self.high];
-        self.low = i32::MAX;
-        Some(piece)
-    }
-}

@@ -89,9 +89,9 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         }
     }
 
-    /// The same bit of consecutive bytes, four at a time. What is hollow, too: most of it is narrow.
+    /// The same bit of consecutive bytes, four at a time.
     #[inline(always)]
-    fn spans(cells: &mut [u8], first: usize, mut spans: &[[i16; 2]], _hollow: &[[i16; 2]], ink: BinaryColor) {
+    fn spans(cells: &mut [u8], first: usize, mut spans: &[[i16; 2]], ink: BinaryColor) {
         let on = ink.is_on();
         let mut mask = 1u32 << (first % BAND);
         for page in cells.as_chunks_mut::<WIDTH>().0.iter_mut().skip(first / BAND) {

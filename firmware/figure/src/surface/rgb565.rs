@@ -1,7 +1,7 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
 use super::frame::{CALL, fill};
-use super::{Cell, InRows, Layout, NARROW};
+use super::{Cell, InRows, Layout};
 use core::hint::black_box;
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
@@ -104,23 +104,12 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     }
 
     #[inline(always)]
-    fn spans(cells: &mut [Pair], first: usize, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Rgb565) {
+    fn spans(cells: &mut [Pair], first: usize, spans: &[[i16; 2]], ink: Rgb565) {
         let colour = RawU16::from(ink).into_inner();
         let both = black_box(Pair([colour; 2]));
-        let mut hollow = hollow.iter();
         let rows = cells.get_mut(first * (WIDTH / 2)..).unwrap_or_default().chunks_exact_mut(WIDTH / 2);
         for (row, &[low, high]) in rows.zip(spans) {
-            let (mut low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
-            if let Some(&[from, to]) = hollow.next() {
-                let (from, to) = (i32::from(from), i32::from(to));
-                if to - from >= NARROW {
-                    let end = high.min(from - 1);
-                    if low <= end {
-                        line(row, [low as usize, end as usize], both);
-                    }
-                    low = low.max(to + 1);
-                }
-            }
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
             if low <= high {
                 line(row, [low as usize, high as usize], both);
             }
