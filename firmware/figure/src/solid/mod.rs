@@ -23,7 +23,7 @@
 //! # When lines are better
 //!
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
-//! figures take six to seven times as many.
+//! figures take five to seven times as many.
 
 mod attach;
 mod floor;

@@ -263,3 +263,36 @@ impl<L: Layout> DrawTarget for Framebuffer<L> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Gray4Rows, MonoPages, Rgb565Rows};
+    use embedded_graphics::pixelcolor::{BinaryColor, Gray4, Rgb565};
+
+    fn spans_are_their_pixels<L: Layout<Ink: PartialEq + core::fmt::Debug>>(ink: L::Ink) {
+        let mut random = fastrand::Rng::with_seed(5);
+        for _ in 0..300 {
+            let (mut spans, mut pixels) = (Framebuffer::<L>::new(), Framebuffer::<L>::new());
+            let first = random.i32(0..16);
+            let rows: Vec<[i16; 2]> = (first..16).map(|_| [random.i16(-9..40), random.i16(-9..40)]).collect();
+            Surface::spans(&mut spans, first, &rows, &[], ink);
+            for (&[low, high], y) in rows.iter().zip(first..) {
+                for x in i32::from(low).max(0)..=i32::from(high).min(L::WIDTH as i32 - 1) {
+                    let cursor = pixels.cursor(x, y);
+                    Surface::put(&mut pixels, cursor, ink);
+                }
+            }
+            for (x, y) in (0..L::WIDTH).flat_map(|x| (0..L::HEIGHT).map(move |y| (x, y))) {
+                assert_eq!(spans.pixel(x, y), pixels.pixel(x, y), "{x} {y}: {rows:?} from {first}");
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_their_pixels_as_far_as_they_are_inside() {
+        spans_are_their_pixels::<Gray4Rows<32, 16, 64>>(Gray4::new(9));
+        spans_are_their_pixels::<MonoPages<32, 16, 64>>(BinaryColor::On);
+        spans_are_their_pixels::<Rgb565Rows<32, 16, 256>>(Rgb565::new(3, 40, 29));
+    }
+}

@@ -33,24 +33,22 @@ const GREEN: u32 = 0x07e0;
 #[inline(always)]
 fn line(row: &mut [Pair], [low, high]: [usize; 2], both: Pair) {
     let Pair([colour, _]) = both;
-    let (odd, mut rest) = (low % 2, row.get_mut(low / 2..).unwrap_or_default());
-    if odd == 1 {
-        let Some((Pair([_, right]), after)) = rest.split_first_mut() else { return };
+    if low % 2 == 1
+        && let Some(Pair([_, right])) = row.get_mut(low / 2)
+    {
         *right = colour;
-        rest = after;
     }
-    let count = high + 1 - low - odd;
-    let Some((whole, after)) = rest.split_at_mut_checked(count / 2) else { return };
+    if high.is_multiple_of(2)
+        && let Some(Pair([left, _])) = row.get_mut(high / 2)
+    {
+        *left = colour;
+    }
+    let whole = row.get_mut(low.div_ceil(2)..high.div_ceil(2)).unwrap_or_default();
     let (blocks, single) = whole.as_chunks_mut::<4>();
     for [a, b, c, d] in blocks {
         (*a, *b, *c, *d) = (both, both, both, both);
     }
     single.iter_mut().for_each(|pair| *pair = both);
-    if count % 2 == 1
-        && let Some(Pair([left, _])) = after.first_mut()
-    {
-        *left = colour;
-    }
 }
 
 impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb565Rows<WIDTH, HEIGHT, PAIRS> {
