@@ -2,12 +2,11 @@
 
 use super::hull::Circle;
 use super::joints::{Joints, Limb};
-use super::look::{Anchor, Attachment, MOST_CIRCLES, Radius};
+use super::look::{Anchor, Attachment, Radius};
 use super::parts::{Body, Part, Place, between};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
 use crate::renderer::FigureRenderer;
 use crate::rotation::{RotationBackend, Vector};
-use heapless::Vec;
 use pantin_math::vector::{cross, direction, sub};
 
 /// An anchor on the display. Axes are right, down and away.
@@ -74,12 +73,11 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 
     /// Where an attachment is.
     #[inline(never)]
-    pub(super) fn attached(&self, joints: &Joints, attachment: &Attachment) -> Part {
-        let mut circles = Vec::<Circle, MOST_CIRCLES>::new();
+    pub(super) fn attached(&self, joints: &Joints, attachment: &Attachment, made: &mut Part) {
         for place in attachment.circles() {
-            let _ = circles.push(self.frame(joints, attachment.anchor, place[0]).circle(place));
+            let _ = made.circles.push(self.frame(joints, attachment.anchor, place[0]).circle(place));
         }
-        Part { circles, tint: attachment.tint, ends: [(0, 0); 2], covers: 0, right: false }
+        made.tint = attachment.tint;
     }
 
     /// How far away an attachment counts as: a skirt as much as the nearer thigh, whose depths are `thighs`.

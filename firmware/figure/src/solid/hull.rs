@@ -7,6 +7,41 @@ use pantin_math::rotation::inverse_length;
 /// A circle in sixteenths of a pixel: centre and radius.
 pub(super) type Circle = [i32; 3];
 
+/// What circles cover, in sixteenths of a pixel: least and greatest column and row. The least ones are greater where there is none.
+pub(super) struct Bounds {
+    least: [i32; 2],
+    most: [i32; 2],
+}
+
+impl Bounds {
+    /// Of circles.
+    #[inline(always)]
+    pub(super) fn of(circles: &[Circle]) -> Self {
+        let mut bounds = Bounds { least: [FAR; 2], most: [-FAR; 2] };
+        for &[x, y, r] in circles.iter().filter(|circle| circle[2] > 0) {
+            bounds.least = [bounds.least[0].min(x - r), bounds.least[1].min(y - r)];
+            bounds.most = [bounds.most[0].max(x + r), bounds.most[1].max(y + r)];
+        }
+        bounds
+    }
+
+    /// The first and the last row of a hull with an outline, as far as they are on a surface of `height` rows; the first is greater if none is.
+    #[inline(always)]
+    pub(super) fn rows(&self, flat: bool, outline: i32, height: i32) -> [i32; 2] {
+        let shift = if flat { 6 } else { 4 };
+        [((self.least[1] >> shift) - outline).max(0), ((self.most[1] >> shift) + outline).min(height - 1)]
+    }
+
+    /// The same of columns.
+    #[inline(always)]
+    pub(super) fn columns(&self, outline: i32, width: i32) -> [i32; 2] {
+        [((self.least[0] >> 4) - outline).max(0), ((self.most[0] >> 4) + outline).min(width - 1)]
+    }
+}
+
+/// Farther than any circle reaches.
+const FAR: i32 = 1 << 28;
+
 /// Rows that are drawn at a time, and those above and below them that are known too.
 pub(super) const WINDOW: usize = 64;
 const ROWS: usize = WINDOW + 2 * MARGIN as usize;
@@ -57,19 +92,14 @@ impl Rows {
         self.spans.get((row - self.base) as usize).copied().unwrap_or(EMPTY)
     }
 
-    /// Computes the rows of the hull of `circles` in the window from row `top` on; `around` rows above and below it are empty. With `flat`, heights
+    /// Computes the rows of the hull of `circles`, which are in `bounds`, in the window from row `top` on; `around` rows above and below it are empty. With `flat`, heights
     /// are multiplied by 4: circles become ellipses, as discs on the floor are seen.
     #[inline(never)]
-    pub(super) fn compute(&mut self, circles: &[Circle], top: i32, flat: bool, around: i32) {
+    pub(super) fn compute(&mut self, circles: &[Circle], bounds: &Bounds, top: i32, flat: bool, around: i32) {
         let (pitch, shift) = if flat { (64, 6) } else { (16, 4) };
         self.base = top - MARGIN;
-        let (mut low, mut high) = (i32::MAX, i32::MIN);
-        for [_, y, r] in circles.iter().filter(|circle| circle[2] > 0) {
-            low = low.min(y - r);
-            high = high.max(y + r);
-        }
-        self.first = ((low.saturating_add(pitch / 2 - 1)) >> shift).max(self.base);
-        self.last = (high.saturating_sub(pitch / 2) >> shift).min(self.base + ROWS as i32 - 1);
+        self.first = ((bounds.least[1] + pitch / 2 - 1) >> shift).max(self.base);
+        self.last = ((bounds.most[1] - pitch / 2) >> shift).min(self.base + ROWS as i32 - 1);
         if self.first > self.last {
             (self.first, self.last) = (0, -1);
             return;
@@ -84,7 +114,7 @@ impl Rows {
                 self.tangents(circle, other, pitch, shift);
             }
         }
-        for span in self.spans.get_mut(from..to + 1).unwrap_or_default() {
+        for span in self.stretch_mut(self.first, self.last) {
             *span = pixels(*span);
         }
     }
@@ -92,16 +122,37 @@ impl Rows {
     /// The spans from a row to another one; both are in the window with its margins, and within [`MARGIN`] of the hull.
     #[inline(always)]
     pub(super) fn stretch(&self, first: i32, last: i32) -> &[Span] {
-        self.spans.get((first - self.base) as usize..((last - self.base) as usize).wrapping_add(1)).unwrap_or_default()
+        let from = self.spans.get((first - self.base) as usize..).unwrap_or_default();
+        from.get(..(last - first + 1) as usize).unwrap_or_default()
     }
 
-    /// Cuts what lies outside another hull off.
-    pub(super) fn clip(&mut self, to: &Rows) {
-        for row in self.first..=self.last {
-            let [low, high] = to.span(row);
-            if let Some(span) = self.spans.get_mut((row - self.base) as usize) {
-                *span = if low > high { EMPTY } else { [span[0].max(low), span[1].min(high)] };
-            }
+    /// Those spans to be changed.
+    #[inline(always)]
+    fn stretch_mut(&mut self, first: i32, last: i32) -> &mut [Span] {
+        let from = self.spans.get_mut((first - self.base) as usize..).unwrap_or_default();
+        from.get_mut(..(last - first + 1) as usize).unwrap_or_default()
+    }
+
+    /// Cuts off what lies outside a circle.
+    #[inline(never)]
+    pub(super) fn clip(&mut self, circle: &Circle) {
+        let (pitch, shift) = (16, 4);
+        let &[x, y, r] = circle;
+        let first = ((y - r + pitch / 2 - 1) >> shift).max(self.first);
+        let last = ((y + r - pitch / 2) >> shift).min(self.last);
+        if first > last || r <= 0 {
+            (self.first, self.last) = (0, -1);
+            return;
+        }
+        (self.first, self.last) = (first, last);
+        let reciprocal = (64 << 16) / r;
+        let mut height = first * pitch + pitch / 2 - y;
+        for span in self.stretch_mut(first, last) {
+            let half = half_width(r, reciprocal, height);
+            let own = pixels([(x - half) as i16, (x + half) as i16]);
+            let [low, high] = *span;
+            *span = if low > high { EMPTY } else { [own[0].max(low), own[1].min(high)] };
+            height += pitch;
         }
     }
 
@@ -109,8 +160,7 @@ impl Rows {
     /// both with 12 more bits.
     #[inline(always)]
     fn edge(&mut self, from: i32, to: i32, left: bool, mut x: i32, slope: i32) {
-        let used = (from - self.base) as usize..((to - self.base) as usize).wrapping_add(1);
-        let spans = self.spans.get_mut(used).unwrap_or_default();
+        let spans = self.stretch_mut(from, to);
         if left {
             for [low, _] in spans {
                 *low = (*low).min((x >> 12) as i16);
@@ -136,12 +186,9 @@ impl Rows {
         if first > last {
             return;
         }
-        let used = (first - self.base) as usize..(last - self.base) as usize + 1;
         let mut height = first * pitch + pitch / 2 - y;
-        for [low, high] in self.spans.get_mut(used).unwrap_or_default() {
-            let index = (height.abs() * reciprocal) >> 16;
-            let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
-            let half = (r * half + 128) >> 8;
+        for [low, high] in self.stretch_mut(first, last) {
+            let half = half_width(r, reciprocal, height);
             *low = (*low).min((x - half) as i16);
             *high = (*high).max((x + half) as i16);
             height += pitch;
@@ -150,7 +197,8 @@ impl Rows {
 
     /// The two outer tangents of two circles; none if one lies within the other.
     #[inline(never)]
-    fn tangents(&mut self, &[x0, y0, r0]: &Circle, &[x1, y1, r1]: &Circle, pitch: i32, shift: u32) {
+    fn tangents(&mut self, one: &Circle, other: &Circle, pitch: i32, shift: u32) {
+        let (&[x0, y0, r0], &[x1, y1, r1]) = (one, other);
         let (dx, dy, k) = (x1 - x0, y1 - y0, r0 - r1);
         if r0 <= 0 || r1 <= 0 || dx.abs() >= FARTHEST || dy.abs() >= FARTHEST {
             return;
@@ -161,26 +209,38 @@ impl Rows {
         }
         // Along the line through both middles: a vector 2^15 long, and what the tangents lean towards it, as a sine and a cosine.
         let (inverse, up) = inverse_root(square);
-        let [ux, uy, sine] = [dx, dy, k].map(|part| (part * inverse) >> (15 - up));
+        let [ux, uy, sine] = [(dx * inverse) >> (15 - up), (dy * inverse) >> (15 - up), (k * inverse) >> (15 - up)];
         let cosine = root_of_fraction(((1 << 30) - sine * sine) as u32);
-        for sign in [1, -1] {
-            let cosine = sign * cosine;
-            let normal = [(sine * ux - cosine * uy) >> 15, (sine * uy + cosine * ux) >> 15];
-            let touch = |x: i32, y: i32, r: i32| [x + ((r * normal[0]) >> 15), y + ((r * normal[1]) >> 15)];
-            let (mut from, mut to) = (touch(x0, y0, r0), touch(x1, y1, r1));
-            if from[1] > to[1] {
-                (from, to) = (to, from);
-            }
-            let first = ((from[1] + pitch / 2 - 1) >> shift).max(self.first);
-            let last = ((to[1] - pitch / 2) >> shift).min(self.last);
-            if first > last || to[1] <= from[1] {
-                continue;
-            }
-            let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]).max(1);
-            let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
-            self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
-        }
+        let (along, across) = ([sine * ux, sine * uy], [cosine * uy, cosine * ux]);
+        self.tangent([one, other], [(along[0] - across[0]) >> 15, (along[1] + across[1]) >> 15], pitch, shift);
+        self.tangent([one, other], [(along[0] + across[0]) >> 15, (along[1] - across[1]) >> 15], pitch, shift);
     }
+
+    /// The tangent of two circles whose normal is given, 2^15 long.
+    #[inline(never)]
+    fn tangent(&mut self, circles: [&Circle; 2], normal: [i32; 2], pitch: i32, shift: u32) {
+        let touch = |&[x, y, r]: &Circle| [x + ((r * normal[0]) >> 15), y + ((r * normal[1]) >> 15)];
+        let (mut from, mut to) = (touch(circles[0]), touch(circles[1]));
+        if from[1] > to[1] {
+            (from, to) = (to, from);
+        }
+        let first = ((from[1] + pitch / 2 - 1) >> shift).max(self.first);
+        let last = ((to[1] - pitch / 2) >> shift).min(self.last);
+        if first > last || to[1] <= from[1] {
+            return;
+        }
+        let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]).max(1);
+        let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
+        self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
+    }
+}
+
+/// Half the width of a circle at a height above or below its middle; `reciprocal` is 2^22 by its radius.
+#[inline(always)]
+fn half_width(r: i32, reciprocal: i32, height: i32) -> i32 {
+    let index = (height.abs() * reciprocal) >> 16;
+    let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
+    (r * half + 128) >> 8
 }
 
 /// 2^15 over the root of a square from 1 on, without a division: a number of 15 bits, and by how many bits more it is to be shifted up.
@@ -206,9 +266,6 @@ const FARTHEST: i32 = 1 << 15;
 /// The pixels whose middles are between two places in sixteenths; a narrow span has the pixel in its middle.
 #[inline(always)]
 fn pixels([low, high]: Span) -> Span {
-    if low > high {
-        return EMPTY;
-    }
     let (low, high) = (i32::from(low), i32::from(high));
     let (first, last) = ((low + 7) >> 4, (high - 8) >> 4);
     if first <= last {
@@ -286,7 +343,7 @@ mod tests {
             let mut circle = || [random.i32(0..2000), random.i32(0..900), random.i32(9..150)];
             let circles = [circle(), circle()];
             let mut rows = Rows::new();
-            rows.compute(&circles, 0, false, 0);
+            rows.compute(&circles, &Bounds::of(&circles), 0, false, 0);
             for row in 0..56 {
                 let [first, last] = rows.span(row);
                 for column in 0..125i16 {
@@ -304,8 +361,8 @@ mod tests {
     fn windows_of_a_picture_continue_each_other() {
         let circles = [[300, 100, 90], [900, 3000, 200], [200, 2500, 60]];
         let (mut one, mut other) = (Rows::new(), Rows::new());
-        one.compute(&circles, 0, false, 0);
-        other.compute(&circles, WINDOW as i32, false, 0);
+        one.compute(&circles, &Bounds::of(&circles), 0, false, 0);
+        other.compute(&circles, &Bounds::of(&circles), WINDOW as i32, false, 0);
         for row in WINDOW as i32 - MARGIN..WINDOW as i32 + MARGIN {
             assert_eq!(one.span(row), other.span(row), "{row}");
             assert_ne!(one.span(row), EMPTY, "{row}");

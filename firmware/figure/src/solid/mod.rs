@@ -23,7 +23,7 @@
 //! # When lines are better
 //!
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
-//! figures take six to seven times as many.
+//! figures take five to seven times as many.
 
 mod attach;
 mod floor;
@@ -54,7 +54,7 @@ pub use look::{Look, LookError, MATERIALS, Material, RADII, Radius};
 use paint::{Cut, Fill, Outline, Painter};
 use pantin::{Player, Pose, WrongForm};
 use pantin_math::vector::{cross, direction, dot};
-use parts::{Body, HEAD, HUMAN_PARTS};
+use parts::{Body, HEAD, HUMAN_PARTS, Part};
 use sizes::{HEAD_MIDDLE, Sizes};
 pub use tint::{Light, Pattern, Tint};
 pub use together::{MOST_FIGURES, draw_together};
@@ -478,14 +478,16 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
             return;
         }
         let key = self.depth_of(part);
-        let part = match joints {
+        let mut made = Part::new();
+        match joints {
             Some(joints) => match usize::from(part).checked_sub(HUMAN_PARTS).and_then(|index| self.look.attachments().nth(index))
             {
-                Some(attachment) => self.attached(joints, &attachment),
-                None => self.human(joints, part),
+                Some(attachment) => self.attached(joints, &attachment, &mut made),
+                None => self.human(joints, part, &mut made),
             },
-            None => self.bone(part),
-        };
+            None => self.bone(part, &mut made),
+        }
+        let part = &made;
         let light = self.light(key, part.right);
         let lit = S::Ink::tint(&part.tint, light);
         let edge = S::Ink::tint(&self.look.tint(Material::Edge), 256);

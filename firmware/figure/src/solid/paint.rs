@@ -1,6 +1,6 @@
 //! Draws the rows of a hull: its outline, its fill, and the shaded side of it.
 
-use super::hull::{Circle, EMPTY, Rows, Span, WINDOW};
+use super::hull::{Bounds, Circle, EMPTY, Rows, Span, WINDOW};
 use crate::ink::Ink;
 use crate::surface::Surface;
 
@@ -54,27 +54,30 @@ impl Cut {
         let at = ((x + aside - 8) << 8) + ((slope * (8 - y)) >> 4);
         Cut::Columns { from_left: dx > 0, at, slope }
     }
-}
 
-/// Where an outline begins or ends in a row, walked down row by row: a column with 12 more bits.
-#[derive(Clone, Copy)]
-struct Edge {
-    at: i32,
-    slope: i32,
-    from_left: bool,
-}
-
-impl Edge {
-    /// Takes what is cut off from a row's span, and goes a row down.
+    /// Takes off what is cut off from the spans of rows from `first` on.
     #[inline(always)]
-    fn cut(&mut self, low: &mut i32, high: &mut i32) {
-        let place = self.at >> 12;
-        if self.from_left {
-            *low = (*low).max(place);
+    fn take_off(&self, first: i32, spans: &mut [Span]) {
+        let &Cut::Columns { from_left, at, slope } = self else { return };
+        let mut at = at.wrapping_add(slope.wrapping_mul(first));
+        // Places beyond all spans are like the last ones.
+        if from_left {
+            for [low, _] in spans {
+                let place = at >> 12;
+                if place > i32::from(*low) {
+                    *low = place.min(i16::MAX.into()) as i16;
+                }
+                at = at.wrapping_add(slope);
+            }
         } else {
-            *high = (*high).min(place);
+            for [_, high] in spans {
+                let place = at >> 12;
+                if place < i32::from(*high) {
+                    *high = place.max(i16::MIN.into()) as i16;
+                }
+                at = at.wrapping_add(slope);
+            }
         }
-        self.at = self.at.wrapping_add(self.slope);
     }
 }
 
@@ -91,29 +94,6 @@ pub(super) struct Outline<I> {
 const WIDEST: usize = 8;
 
 impl<I> Outline<I> {
-    /// Edges from a row on.
-    #[inline(always)]
-    fn edges(&self, row: i32) -> [Edge; 2] {
-        self.cuts.map(|cut| match cut {
-            Cut::Columns { from_left, at, slope } => Edge { at: at.wrapping_add(slope.wrapping_mul(row)), slope, from_left },
-            _ => Edge { at: i32::MIN, slope: 0, from_left: true },
-        })
-    }
-
-    /// The first and the last row that are not cut off as a whole.
-    #[inline(always)]
-    fn rows(&self) -> [i32; 2] {
-        let mut rows = [i32::MIN, i32::MAX];
-        for cut in &self.cuts {
-            match *cut {
-                Cut::Rows { above: true, row } => rows[0] = rows[0].max(row),
-                Cut::Rows { above: false, row } => rows[1] = rows[1].min(row),
-                _ => {}
-            }
-        }
-        rows
-    }
-
     /// Pixels that the outline reaches to the side of a row that is 1, 2, ... rows away.
     fn reaches(&self) -> [i32; WIDEST] {
         let mut reach = self.width;
@@ -132,25 +112,27 @@ impl<I> Outline<I> {
 pub(super) struct Painter<'a, S: Surface> {
     pub surface: &'a mut S,
     rows: Rows,
+    /// Outlines or cores of some rows.
+    spans: [Span; AT_ONCE],
 }
 
 impl<'a, S: Surface> Painter<'a, S> {
     /// Draws on `surface`.
     #[inline(always)]
     pub(super) fn on(surface: &'a mut S) -> Self {
-        Painter { surface, rows: Rows::new() }
+        Painter { surface, rows: Rows::new(), spans: [EMPTY; AT_ONCE] }
     }
 
     /// Draws the hull of circles; `flat` ones as [`Rows::compute`] says.
     #[inline(never)]
     pub(super) fn hull(&mut self, circles: &[Circle], flat: bool, outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
-        let [width, height] = self.surface.size();
-        let [first, last] = rows_of(circles, flat, outline.width, height);
-        let columns = columns_of(circles, outline.width, width);
+        let bounds = Bounds::of(circles);
+        let [first, last] = bounds.rows(flat, outline.width, self.surface.size()[1]);
+        let columns = bounds.columns(outline.width, self.surface.size()[0]);
         let mut top = first;
         while top <= last {
-            self.rows.compute(circles, top, flat, 2 * outline.width);
-            paint(self.surface, &self.rows, top, columns, outline, fill);
+            self.rows.compute(circles, &bounds, top, flat, 2 * outline.width);
+            paint(self, top, columns, outline, fill);
             top += WINDOW as i32;
         }
     }
@@ -158,66 +140,49 @@ impl<'a, S: Surface> Painter<'a, S> {
     /// Fills what of a circle lies within the hull that was drawn last, which is `hull`.
     #[inline(never)]
     pub(super) fn clipped(&mut self, circle: Circle, hull: &[Circle], fill: &Fill<S::Ink>) {
-        let [width, height] = self.surface.size();
-        let [first, last] = rows_of(&[circle], false, 0, height);
-        let columns = columns_of(&[circle], 0, width);
-        let (mut top, mut own) = (first, Rows::new());
+        let (bounds, around) = (Bounds::of(&[circle]), Bounds::of(hull));
+        let [first, last] = bounds.rows(false, 0, self.surface.size()[1]);
+        let columns = bounds.columns(0, self.surface.size()[0]);
+        let mut top = first;
         // Most heads are within one window, whose rows are known.
-        let known = rows_of(hull, false, 0, i32::MAX);
-        let known = (self.rows.first <= known[0] + 1 && self.rows.last >= known[1] - 1) || first > last;
+        let known = around.rows(false, 0, i32::MAX);
+        let known = self.rows.first <= known[0] + 1 && self.rows.last >= known[1] - 1;
         while top <= last {
             if !known {
-                self.rows.compute(hull, top, false, 0);
+                self.rows.compute(hull, &around, top, false, 0);
             }
-            own.compute(&[circle], top, false, 0);
-            own.clip(&self.rows);
-            paint(self.surface, &own, top, columns, &Outline { ink: S::Ink::DARK, width: 0, cuts: [Cut::None; 2] }, fill);
+            self.rows.clip(&circle);
+            paint(self, top, columns, &Outline { ink: S::Ink::DARK, width: 0, cuts: [Cut::None; 2] }, fill);
             top += WINDOW as i32;
         }
     }
 }
 
-/// The first and the last row of a hull and its outline, as far as they are on a surface of `height` rows.
-#[inline(always)]
-fn rows_of(circles: &[Circle], flat: bool, outline: i32, height: i32) -> [i32; 2] {
-    let shift = if flat { 6 } else { 4 };
-    let (mut low, mut high) = (i32::MAX, i32::MIN);
-    for [_, y, r] in circles {
-        low = low.min(y - r);
-        high = high.max(y + r);
-    }
-    [((low >> shift) - outline).max(0), ((high >> shift) + outline).min(height - 1)]
-}
-
-/// The first and the last column of a hull and its outline, as far as they are on a surface of `width` columns; the first is greater if none is.
-#[inline(always)]
-fn columns_of(circles: &[Circle], outline: i32, width: i32) -> [i32; 2] {
-    let (mut low, mut high) = (i32::MAX, i32::MIN);
-    for [x, _, r] in circles {
-        low = low.min(x - r);
-        high = high.max(x + r);
-    }
-    [((low >> 4) - outline).max(0), ((high >> 4) + outline).min(width - 1)]
-}
-
-/// Spans of at most this many pixels are drawn over what lies below them: two spans beside them would take longer.
-const NARROW: i32 = 8;
+/// Rows whose outlines or cores are worked out before they are drawn: loops that do one thing keep in registers what they need.
+const AT_ONCE: usize = 32;
 
 /// Draws a hull's rows in the window from row `top` on, whose pixels are all in `columns` and on the surface: the outline first, then the
-/// fill, which covers parts of it. Apart, both loops keep in registers what they need.
+/// fill, which covers parts of it.
 #[inline(never)]
-fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, columns: [i32; 2], outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
+fn paint<S: Surface>(
+    Painter { surface, rows, spans }: &mut Painter<S>,
+    top: i32,
+    columns: [i32; 2],
+    outline: &Outline<S::Ink>,
+    fill: &Fill<S::Ink>,
+) {
+    let surface = &mut **surface;
     let height = surface.size()[1];
     let wide = outline.width.clamp(0, WIDEST as i32);
     let (first, last) = ((rows.first - wide).max(top), (rows.last + wide).min(top + WINDOW as i32 - 1).min(height - 1));
     if rows.first > rows.last || first > last || columns[0] > columns[1] {
         return;
     }
-    if wide > 0 {
-        draw_outline(surface, rows, [first, last], outline);
-    }
-    draw_fill(surface, rows, [first.max(rows.first), last.min(rows.last)], fill);
     surface.mark([columns[0], first], [columns[1], last]);
+    if wide > 0 {
+        draw_outline(surface, rows, [first, last], outline, spans);
+    }
+    draw_fill(surface, rows, [first.max(rows.first), last.min(rows.last)], fill, spans);
 }
 
 /// A span in 32 bits. Where `map` is a loop over memory, this is two loads.
@@ -228,41 +193,55 @@ fn wide_of(&[low, high]: &Span) -> [i32; 2] {
 
 /// Draws an outline in rows that are on the surface.
 #[inline(always)]
-fn draw_outline<S: Surface>(surface: &mut S, rows: &Rows, [first, last]: [i32; 2], outline: &Outline<S::Ink>) {
-    let most = surface.size()[0] - 1;
-    let [from, to] = outline.rows();
-    let (first, last) = (first.max(from), last.min(to));
-    let mut edges = outline.edges(first);
-    let cut = edges.iter().any(|edge| edge.at != i32::MIN);
-    let mut beside = |row: i32, own: [i32; 2], mut low: i32, mut high: i32| {
-        if cut {
-            edges.iter_mut().for_each(|edge| edge.cut(&mut low, &mut high));
+fn draw_outline<S: Surface>(
+    surface: &mut S,
+    rows: &Rows,
+    [first, last]: [i32; 2],
+    outline: &Outline<S::Ink>,
+    spans: &mut [Span; AT_ONCE],
+) {
+    let (mut first, mut last) = (first, last);
+    for cut in &outline.cuts {
+        match *cut {
+            Cut::Rows { above: true, row } => first = first.max(row),
+            Cut::Rows { above: false, row } => last = last.min(row),
+            _ => {}
         }
-        (low, high) = (low.max(0), high.min(most));
-        if low > high {
-            return;
-        }
-        let inner = [own[0].max(0), own[1].min(most)];
-        if inner[1] - inner[0] < NARROW {
-            return span(surface, row, [low, high], outline.ink);
-        }
-        span(surface, row, [low, high.min(inner[0] - 1)], outline.ink);
-        span(surface, row, [low.max(inner[1] + 1), high], outline.ink);
-    };
-    let wide = outline.width.min(WIDEST as i32);
-    let spans = if first <= last { rows.stretch(first - wide, last + wide) } else { &[] };
-    if wide == 1 {
-        let [above, own, rest @ ..] = spans else { return };
-        let (mut above, mut own) = (wide_of(above), wide_of(own));
-        for (below, row) in rest.iter().zip(first..) {
-            let below = wide_of(below);
-            beside(row, own, (own[0] - 1).min(above[0]).min(below[0]), (own[1] + 1).max(above[1]).max(below[1]));
-            (above, own) = (own, below);
-        }
-        return;
     }
-    let reaches = outline.reaches();
-    for (window, row) in spans.windows(2 * wide as usize + 1).zip(first..) {
+    let wide = outline.width.min(WIDEST as i32);
+    while first <= last {
+        let count = (last - first + 1).min(AT_ONCE as i32);
+        let around = rows.stretch(first - wide, first + count - 1 + wide);
+        let spans = spans.get_mut(..count as usize).unwrap_or_default();
+        if wide == 1 {
+            thin(around, spans);
+        } else {
+            thick(around, outline, spans);
+        }
+        outline.cuts.iter().for_each(|cut| cut.take_off(first, spans));
+        surface.spans(first, spans, around.get(wide as usize..).unwrap_or_default(), outline.ink);
+        first += count;
+    }
+}
+
+/// What an outline of a pixel covers.
+#[inline(always)]
+fn thin(around: &[Span], spans: &mut [Span]) {
+    let [above, own, rest @ ..] = around else { return };
+    let (mut above, mut own) = (wide_of(above), wide_of(own));
+    for (below, span) in rest.iter().zip(spans) {
+        let below = wide_of(below);
+        let (low, high) = ((own[0] - 1).min(above[0]).min(below[0]), (own[1] + 1).max(above[1]).max(below[1]));
+        *span = [low as i16, high as i16];
+        (above, own) = (own, below);
+    }
+}
+
+/// What one of more pixels covers.
+#[inline(always)]
+fn thick<I>(around: &[Span], outline: &Outline<I>, spans: &mut [Span]) {
+    let (wide, reaches) = (outline.width.min(WIDEST as i32), outline.reaches());
+    for (window, span) in around.windows(2 * wide as usize + 1).zip(spans) {
         let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
         let own = wide_of(middle);
         let (mut low, mut high) = (own[0] - wide, own[1] + wide);
@@ -270,71 +249,63 @@ fn draw_outline<S: Surface>(surface: &mut S, rows: &Rows, [first, last]: [i32; 2
             low = low.min(i32::from(above[0].min(below[0])) - reach);
             high = high.max(i32::from(above[1].max(below[1])) + reach);
         }
-        beside(row, own, low, high);
+        *span = [low as i16, high as i16];
     }
 }
 
 /// Fills rows that are on the surface.
 #[inline(always)]
-fn draw_fill<S: Surface>(surface: &mut S, rows: &Rows, [first, last]: [i32; 2], fill: &Fill<S::Ink>) {
-    if first > last {
-        return;
-    }
-    let most = surface.size()[0] - 1;
-    let inners = rows.stretch(first, last).iter().zip(first..).map(|(own, row)| {
-        let [low, high] = wide_of(own);
-        (row, [low.max(0), high.min(most)])
-    });
-    match *fill {
-        Fill::Plain(ink) => inners.for_each(|(row, inner)| span(surface, row, inner, ink)),
-        Fill::Checkered(ink, other) | Fill::Dotted(ink, other) => {
-            let every_row = matches!(fill, Fill::Checkered(..));
-            for (row, inner) in inners {
-                span(surface, row, inner, other);
-                let begin = inner[0] + ((inner[0] ^ row) & 1);
-                if begin <= inner[1] && (row & 1 == 0 || every_row) {
-                    surface.alternate(row, [begin, inner[1]], ink);
+fn draw_fill<S: Surface>(
+    surface: &mut S,
+    rows: &Rows,
+    [mut first, last]: [i32; 2],
+    fill: &Fill<S::Ink>,
+    cores: &mut [Span; AT_ONCE],
+) {
+    while first <= last {
+        let count = (last - first + 1).min(AT_ONCE as i32);
+        let own = rows.stretch(first, first + count - 1);
+        let cores = cores.get_mut(..count as usize).unwrap_or_default();
+        match *fill {
+            Fill::Plain(ink) => surface.spans(first, own, &[], ink),
+            // Where there are none, no code for them.
+            Fill::Checkered(..) | Fill::Dotted(..) | Fill::Rimmed(..) if S::Ink::TONES => {}
+            Fill::Shaded(..) if !S::Ink::SHADED => {}
+            Fill::Checkered(ink, other) | Fill::Dotted(ink, other) => {
+                surface.spans(first, own, &[], other);
+                let most = surface.size()[0] - 1;
+                for (own, row) in own.iter().zip(first..) {
+                    let [low, high] = wide_of(own);
+                    let low = low.max(0);
+                    let (begin, high) = (low + ((low ^ row) & 1), high.min(most));
+                    if begin <= high && (row & 1 == 0 || matches!(fill, Fill::Checkered(..))) {
+                        surface.alternate(row, [begin, high], ink);
+                    }
                 }
             }
-        }
-        Fill::Shaded(lit, shaded, [across, down]) => {
-            // There are none below the hull's last row.
-            let mut below = rows.stretch(first + down, rows.last).iter();
-            for (row, inner) in inners {
-                let [low, high] = wide_of(below.next().unwrap_or(&EMPTY));
-                nested(surface, row, inner, [low - across, high - across], [shaded, lit]);
+            Fill::Shaded(lit, shaded, [across, down]) => {
+                // There are none below the hull's last row.
+                let below = rows.stretch(first + down, (first + count - 1 + down).min(rows.last));
+                for ((core, own), below) in cores.iter_mut().zip(own).zip(below) {
+                    let ([low, high], own) = (wide_of(below), wide_of(own));
+                    // What ends before the surface stays there.
+                    *core = [(low - across).max(own[0]) as i16, (high.max(-1) - across).min(own[1]) as i16];
+                }
+                cores.iter_mut().skip(below.len()).for_each(|core| *core = EMPTY);
+                surface.spans(first, own, cores, shaded);
+                surface.spans(first, cores, &[], lit);
+            }
+            Fill::Rimmed(rim, ink) => {
+                for (core, row) in cores.iter_mut().zip(first..) {
+                    let [[low, high], above, below] = [0, -1, 1].map(|away| rows.span(row + away));
+                    // What is empty stays so.
+                    let (low, high) = (low.saturating_add(1), high.saturating_sub(1));
+                    *core = [low.max(above[0]).max(below[0]), high.min(above[1]).min(below[1])];
+                }
+                surface.spans(first, own, cores, rim);
+                surface.spans(first, cores, &[], ink);
             }
         }
-        Fill::Rimmed(rim, ink) => {
-            for (row, inner) in inners {
-                let [[low, high], above, below] = [0, -1, 1].map(|away| wide_of(&rows.span(row + away)));
-                let core = [(low + 1).max(above[0]).max(below[0]), (high - 1).min(above[1]).min(below[1])];
-                nested(surface, row, inner, core, [rim, ink]);
-            }
-        }
-    }
-}
-
-/// Draws a span within another one, each in its ink.
-#[inline(always)]
-fn nested<S: Surface>(surface: &mut S, row: i32, outer: [i32; 2], inner: [i32; 2], [around, ink]: [S::Ink; 2]) {
-    if outer[0] > outer[1] {
-        return;
-    }
-    let inner = [inner[0].max(outer[0]), inner[1].min(outer[1])];
-    if outer[1] - outer[0] < NARROW || inner[0] > inner[1] {
-        span(surface, row, outer, around);
-    } else {
-        span(surface, row, [outer[0], inner[0] - 1], around);
-        span(surface, row, [inner[1] + 1, outer[1]], around);
-    }
-    span(surface, row, inner, ink);
-}
-
-/// The pixels of a row, where there are any.
-#[inline(never)]
-fn span<S: Surface>(surface: &mut S, row: i32, [low, high]: [i32; 2], ink: S::Ink) {
-    if low <= high {
-        surface.span(row, [low, high], ink);
+        first += count;
     }
 }

@@ -4,7 +4,7 @@ use super::hull::Circle;
 use super::joints::{Joints, NONE};
 use super::look::{Look, Material, RADII, Radius};
 use super::sizes::Sizes;
-use super::tint::Tint;
+use super::tint::{Pattern, Tint};
 use super::{HeadPose, Kind, MOST_PARTS};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
 use crate::ink::BodyPart;
@@ -51,6 +51,15 @@ pub(super) struct Part {
     pub covers: JointBit,
     /// Whether it is of the right side, which is a little darker.
     pub right: bool,
+}
+
+impl Part {
+    /// Nothing yet.
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let tint = Tint { rgb: [0; 3], grey: 0, pattern: Pattern::Dark };
+        Part { circles: Vec::new(), tint, ends: [(0, 0); 2], covers: 0, right: false }
+    }
 }
 
 /// A place on the display: sixteenths of a pixel right and down, and depth.
@@ -166,18 +175,18 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 
     /// A part of a person but the head.
     #[inline(never)]
-    pub(super) fn human(&self, joints: &Joints, part: u8) -> Part {
+    pub(super) fn human(&self, joints: &Joints, part: u8, made: &mut Part) {
         let bit = |side: usize, index: usize| 8 << (6 * side + index);
-        let mut made =
-            Part { circles: Vec::new(), tint: self.look.tint(Material::Skin), ends: [(0, 0); 2], covers: 0, right: false };
+        let circles = &mut made.circles;
         let mut add = |place: Place, radius: Radius| {
             // There is room for four.
-            let _ = made.circles.push(self.circle(place, radius));
+            let _ = circles.push(self.circle(place, radius));
         };
         if part == NECK {
             let [from, to] = [joints.neck, joints.head].map(|joint| self.joint(joint));
             add(between(from, to, self.sizes.neck.into()), Radius::Neck);
             add(to, Radius::Neck);
+            made.tint = self.look.tint(Material::Skin);
             made.ends = [(0, NECK_JOINT), (1, HEAD_JOINT)];
         } else if part < LIMBS {
             let (limbs, inwards, radius, material, covers) = match part {
@@ -217,12 +226,11 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
             made.right = side == 1;
         }
         made.covers |= made.ends[0].1 | made.ends[1].1;
-        made
     }
 
     /// A bone of a rig that is no person's.
     #[inline(never)]
-    pub(super) fn bone(&self, index: u8) -> Part {
+    pub(super) fn bone(&self, index: u8, made: &mut Part) {
         let bones = &self.figure.skeleton().bones;
         let bone = bones.get(usize::from(index));
         let parent = bone.and_then(|bone| bone.parent).unwrap_or(index);
@@ -239,12 +247,11 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         let near = self.round(self.joint(parent), radius);
         let far = self.round(self.joint(index), radius * 3 / 4);
         let bit = |joint: u8| 1u64.checked_shl(joint.into()).unwrap_or(0);
-        Part {
-            circles: Vec::from_slice(&[near, far]).unwrap_or_default(),
-            tint: self.look.tint(material),
-            ends: [(0, bit(parent)), (1, bit(index))],
-            covers: bit(parent) | bit(index),
-            right: body_part == BodyPart::Right,
-        }
+        // There is room for four.
+        let _ = made.circles.extend_from_slice(&[near, far]);
+        made.tint = self.look.tint(material);
+        made.ends = [(0, bit(parent)), (1, bit(index))];
+        made.covers = bit(parent) | bit(index);
+        made.right = body_part == BodyPart::Right;
     }
 }

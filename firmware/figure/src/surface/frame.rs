@@ -43,6 +43,16 @@ pub trait Layout {
         }
         Self::put(cells, cursor, ink);
     }
+    /// Sets a span of each row from `first` on, as far as it is inside; all rows are. See [`Surface::spans`].
+    #[inline]
+    fn spans(cells: &mut [Self::Cell], first: usize, spans: &[[i16; 2]], ink: Self::Ink) {
+        for (&[low, high], row) in spans.iter().zip(first..) {
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(Self::WIDTH as i32 - 1));
+            if low <= high {
+                Self::span(cells, row, [low as usize, high as usize], ink);
+            }
+        }
+    }
     /// Sets every other pixel of row `y` from column `from` to column `to`; all are inside. See [`Surface::alternate`].
     #[inline]
     fn alternate(cells: &mut [Self::Cell], y: usize, [from, to]: [usize; 2], ink: Self::Ink) {
@@ -210,6 +220,12 @@ impl<L: Layout> Surface for Framebuffer<L> {
         L::span(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
     }
 
+    /// What is hollow, too: a second span in a row takes as long as 40 pixels.
+    #[inline(never)]
+    fn spans(&mut self, first: i32, spans: &[[i16; 2]], _hollow: &[[i16; 2]], ink: L::Ink) {
+        L::spans(self.cells.as_mut(), first as usize, spans, ink);
+    }
+
     #[inline(always)]
     fn alternate(&mut self, y: i32, columns: [i32; 2], ink: L::Ink) {
         L::alternate(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
@@ -245,5 +261,38 @@ impl<L: Layout> DrawTarget for Framebuffer<L> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Gray4Rows, MonoPages, Rgb565Rows};
+    use embedded_graphics::pixelcolor::{BinaryColor, Gray4, Rgb565};
+
+    fn spans_are_their_pixels<L: Layout<Ink: PartialEq + core::fmt::Debug>>(ink: L::Ink) {
+        let mut random = fastrand::Rng::with_seed(5);
+        for _ in 0..300 {
+            let (mut spans, mut pixels) = (Framebuffer::<L>::new(), Framebuffer::<L>::new());
+            let first = random.i32(0..16);
+            let rows: Vec<[i16; 2]> = (first..16).map(|_| [random.i16(-9..40), random.i16(-9..40)]).collect();
+            Surface::spans(&mut spans, first, &rows, &[], ink);
+            for (&[low, high], y) in rows.iter().zip(first..) {
+                for x in i32::from(low).max(0)..=i32::from(high).min(L::WIDTH as i32 - 1) {
+                    let cursor = pixels.cursor(x, y);
+                    Surface::put(&mut pixels, cursor, ink);
+                }
+            }
+            for (x, y) in (0..L::WIDTH).flat_map(|x| (0..L::HEIGHT).map(move |y| (x, y))) {
+                assert_eq!(spans.pixel(x, y), pixels.pixel(x, y), "{x} {y}: {rows:?} from {first}");
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_their_pixels_as_far_as_they_are_inside() {
+        spans_are_their_pixels::<Gray4Rows<32, 16, 64>>(Gray4::new(9));
+        spans_are_their_pixels::<MonoPages<32, 16, 64>>(BinaryColor::On);
+        spans_are_their_pixels::<Rgb565Rows<32, 16, 256>>(Rgb565::new(3, 40, 29));
     }
 }

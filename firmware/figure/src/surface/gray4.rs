@@ -89,6 +89,34 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
         }
     }
 
+    /// Parts of the first and the last word, and what lies between them.
+    #[inline(always)]
+    fn spans(cells: &mut [u32], first: usize, spans: &[[i16; 2]], ink: Gray4) {
+        let grey = everywhere(ink);
+        let rows = cells.get_mut(first * (WIDTH / 8)..).unwrap_or_default().chunks_exact_mut(WIDTH / 8);
+        for (row, &[low, high]) in rows.zip(spans) {
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
+            if low > high {
+                continue;
+            }
+            let (low, high) = (low as usize, high as usize);
+            let (head, tail) = (u32::MAX >> (low % 8 * 4), u32::MAX << (28 - high % 8 * 4));
+            let (from, to) = (low / 8, high / 8);
+            let Some(left) = row.get_mut(from) else { continue };
+            if from == to {
+                *left ^= (*left ^ grey) & head & tail;
+                continue;
+            }
+            *left ^= (*left ^ grey) & head;
+            if to - from > 1 {
+                row.get_mut(from + 1..to).unwrap_or_default().iter_mut().for_each(|cell| *cell = grey);
+            }
+            if let Some(right) = row.get_mut(to) {
+                *right ^= (*right ^ grey) & tail;
+            }
+        }
+    }
+
     #[inline(always)]
     fn blend(cells: &mut [u32], cursor: Nibble<WIDTH>, ink: Gray4, cover: u32) {
         let was = Self::get(cells, cursor).luma();

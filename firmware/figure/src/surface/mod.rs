@@ -54,6 +54,28 @@ pub trait Surface {
         self.put(cursor, ink);
     }
 
+    /// Sets a span of each row from `first` on, as far as it is inside; where its first column is greater than its last one there is none. Pixels
+    /// of `hollow`, which has a span for each of those rows, or none at all, may be left out: they are drawn afterwards.
+    #[inline]
+    fn spans(&mut self, first: i32, spans: &[[i16; 2]], hollow: &[[i16; 2]], ink: Self::Ink) {
+        let most = self.size()[0] - 1;
+        for (index, (span, row)) in spans.iter().zip(first..).enumerate() {
+            let (mut low, high) = (i32::from(span[0]).max(0), i32::from(span[1]).min(most));
+            if let Some(&[from, to]) = hollow.get(index)
+                && i32::from(to) - i32::from(from) >= NARROW
+            {
+                let end = high.min(i32::from(from) - 1);
+                if low <= end {
+                    self.span(row, [low, end], ink);
+                }
+                low = low.max(i32::from(to) + 1);
+            }
+            if low <= high {
+                self.span(row, [low, high], ink);
+            }
+        }
+    }
+
     /// Sets every other pixel of row `y` from column `from` to column `to`, `from` first. All are inside, and `from` is at most `to`.
     #[inline]
     fn alternate(&mut self, y: i32, [from, to]: [i32; 2], ink: Self::Ink) {
@@ -72,3 +94,6 @@ pub trait Surface {
     /// Notes that pixels of a rectangle inside may have changed; ends belong to it.
     fn mark(&mut self, from: [i32; 2], to: [i32; 2]);
 }
+
+/// Spans of at most this many pixels are drawn over: two spans beside them would take longer.
+const NARROW: i32 = 8;

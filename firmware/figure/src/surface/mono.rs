@@ -36,6 +36,23 @@ impl<const WIDTH: usize> Cursor for Bit<WIDTH> {
     }
 }
 
+/// Sets or clears a bit of consecutive bytes.
+#[inline(always)]
+fn line(cells: &mut [u8], mask: u8, on: bool) {
+    let (blocks, rest) = cells.as_chunks_mut::<4>();
+    if on {
+        for [a, b, c, d] in blocks {
+            (*a, *b, *c, *d) = (*a | mask, *b | mask, *c | mask, *d | mask);
+        }
+        rest.iter_mut().for_each(|cell| *cell |= mask);
+    } else {
+        for [a, b, c, d] in blocks {
+            (*a, *b, *c, *d) = (*a & !mask, *b & !mask, *c & !mask, *d & !mask);
+        }
+        rest.iter_mut().for_each(|cell| *cell &= !mask);
+    }
+}
+
 impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for MonoPages<WIDTH, HEIGHT, BYTES> {
     type Cell = u8;
     type Cells = [u8; BYTES];
@@ -69,6 +86,30 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
             cells.iter_mut().for_each(|cell| *cell |= mask);
         } else {
             cells.iter_mut().for_each(|cell| *cell &= !mask);
+        }
+    }
+
+    /// The same bit of consecutive bytes, four at a time.
+    #[inline(always)]
+    fn spans(cells: &mut [u8], first: usize, mut spans: &[[i16; 2]], ink: BinaryColor) {
+        let on = ink.is_on();
+        let mut mask = 1u32 << (first % BAND);
+        for page in cells.as_chunks_mut::<WIDTH>().0.iter_mut().skip(first / BAND) {
+            if spans.is_empty() {
+                return;
+            }
+            while let Some((&[low, high], rest)) = spans.split_first() {
+                if mask == 1 << BAND {
+                    break;
+                }
+                let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
+                if low <= high {
+                    line(page.get_mut(low as usize..=high as usize).unwrap_or_default(), mask as u8, on);
+                }
+                mask <<= 1;
+                spans = rest;
+            }
+            mask = 1;
         }
     }
 

@@ -29,6 +29,28 @@ impl Cell for Pair {
 const RED_BLUE: u32 = 0xf81f;
 const GREEN: u32 = 0x07e0;
 
+/// Draws pixels of a row: whole pairs, four at a time, and halves of the first and the last one.
+#[inline(always)]
+fn line(row: &mut [Pair], [low, high]: [usize; 2], both: Pair) {
+    let Pair([colour, _]) = both;
+    if low % 2 == 1
+        && let Some(Pair([_, right])) = row.get_mut(low / 2)
+    {
+        *right = colour;
+    }
+    if high.is_multiple_of(2)
+        && let Some(Pair([left, _])) = row.get_mut(high / 2)
+    {
+        *left = colour;
+    }
+    let whole = row.get_mut(low.div_ceil(2)..high.div_ceil(2)).unwrap_or_default();
+    let (blocks, single) = whole.as_chunks_mut::<4>();
+    for [a, b, c, d] in blocks {
+        (*a, *b, *c, *d) = (both, both, both, both);
+    }
+    single.iter_mut().for_each(|pair| *pair = both);
+}
+
 impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb565Rows<WIDTH, HEIGHT, PAIRS> {
     type Cell = Pair;
     type Cells = [Pair; PAIRS];
@@ -76,6 +98,19 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
             whole.iter_mut().for_each(|pair| *pair = both);
         } else {
             fill(whole, Pair([colour; 2]));
+        }
+    }
+
+    #[inline(always)]
+    fn spans(cells: &mut [Pair], first: usize, spans: &[[i16; 2]], ink: Rgb565) {
+        let colour = RawU16::from(ink).into_inner();
+        let both = black_box(Pair([colour; 2]));
+        let rows = cells.get_mut(first * (WIDTH / 2)..).unwrap_or_default().chunks_exact_mut(WIDTH / 2);
+        for (row, &[low, high]) in rows.zip(spans) {
+            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
+            if low <= high {
+                line(row, [low as usize, high as usize], both);
+            }
         }
     }
 
