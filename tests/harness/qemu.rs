@@ -1,6 +1,6 @@
 //! QEMU as a child process: it never outlives its time limit or its value in the program.
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -293,14 +293,20 @@ impl Qemu {
 
     /// Adds QEMU's messages and its exit code, if it ended, to the error of a connection: they are the cause.
     pub fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
-        thread::sleep(POLL * 10);
-        match self.child.try_wait() {
-            Ok(Some(status)) => {
+        // A connection that is closed is one of a QEMU that ends, however long a busy machine takes for that.
+        let until = if is_closed(&error) { self.deadline } else { Instant::now() + POLL * 10 };
+        loop {
+            if let Ok(Some(status)) = self.child.try_wait() {
                 let words = String::from_utf8_lossy(&take(&mut self.stderr)).trim().to_owned();
-                error.context(format!("QEMU ended with code {}: {words}", code(status)))
+                return error.context(format!("QEMU ended with code {}: {words}", code(status)));
             }
-            _ if Instant::now() >= self.deadline => error.context(format!("QEMU ran longer than {:?}", self.limit)),
-            _ => error,
+            if Instant::now() >= self.deadline {
+                return error.context(format!("QEMU ran longer than {:?}", self.limit));
+            }
+            if Instant::now() >= until {
+                return error;
+            }
+            thread::sleep(POLL);
         }
     }
 
@@ -322,7 +328,7 @@ impl Qemu {
                     stream.set_nonblocking(false)?;
                     return Ok(stream);
                 }
-                Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => thread::sleep(POLL),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => thread::sleep(POLL),
                 Err(error) => return Err(error.into()),
             }
             if self.child.try_wait()?.is_some() {
@@ -338,6 +344,12 @@ impl Qemu {
             _ => bail!("QEMU ran longer than {:?}", self.limit),
         }
     }
+}
+
+/// Whether an error is that the other side closed the connection.
+fn is_closed(error: &anyhow::Error) -> bool {
+    let kinds = [ErrorKind::ConnectionReset, ErrorKind::BrokenPipe, ErrorKind::UnexpectedEof];
+    error.chain().filter_map(|cause| cause.downcast_ref::<std::io::Error>()).any(|error| kinds.contains(&error.kind()))
 }
 
 impl Drop for Qemu {

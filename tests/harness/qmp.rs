@@ -1,6 +1,6 @@
 //! A minimal client of QEMU's machine protocol (QMP): pictures of the display, keys, the end.
 
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Error, ErrorKind, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::time::Duration;
@@ -62,7 +62,7 @@ impl Qmp {
     fn receive(&mut self) -> Result<Value> {
         let mut line = String::new();
         if self.stream.read_line(&mut line)? == 0 {
-            bail!("QEMU closed the connection");
+            return Err(Error::new(ErrorKind::UnexpectedEof, "QEMU closed the connection").into());
         }
         serde_json::from_str(&line).with_context(|| format!("not JSON: {line:?}"))
     }
