@@ -32,7 +32,7 @@ impl Bounds {
         [((self.least[1] >> shift) - outline).max(0), ((self.most[1] >> shift) + outline).min(height - 1)]
     }
 
-    /// The same of columns.
+    /// The first and the last column of a hull with an outline, as far as they are on a surface of `width` columns.
     #[inline(always)]
     pub(super) fn columns(&self, outline: i32, width: i32) -> [i32; 2] {
         [((self.least[0] >> 4) - outline).max(0), ((self.most[0] >> 4) + outline).min(width - 1)]

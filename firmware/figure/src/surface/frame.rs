@@ -46,10 +46,9 @@ pub trait Layout {
     /// Sets a span of each row from `first` on, as far as it is inside; all rows are. See [`Surface::spans`].
     #[inline]
     fn spans(cells: &mut [Self::Cell], first: usize, spans: &[[i16; 2]], ink: Self::Ink) {
-        for (&[low, high], row) in spans.iter().zip(first..) {
-            let (low, high) = (i32::from(low).max(0), i32::from(high).min(Self::WIDTH as i32 - 1));
-            if low <= high {
-                Self::span(cells, row, [low as usize, high as usize], ink);
+        for (span, row) in spans.iter().zip(first..) {
+            if let Some(columns) = inside(span, Self::WIDTH) {
+                Self::span(cells, row, columns, ink);
             }
         }
     }
@@ -262,6 +261,13 @@ impl<L: Layout> DrawTarget for Framebuffer<L> {
         }
         Ok(())
     }
+}
+
+/// The columns of a span that are on a surface of `width` columns; `None` if there are none.
+#[inline(always)]
+pub(super) fn inside(&[low, high]: &[i16; 2], width: usize) -> Option<[usize; 2]> {
+    let (low, high) = (i32::from(low).max(0), i32::from(high).min(width as i32 - 1));
+    (low <= high).then_some([low as usize, high as usize])
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Rows from the top, two pixels of 16 greys a byte, the left one in the high half: SSD0323, SSD1322, SSD1327.
 
+use super::frame::inside;
 use super::{Cursor, Layout};
 use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
@@ -94,12 +95,8 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
     fn spans(cells: &mut [u32], first: usize, spans: &[[i16; 2]], ink: Gray4) {
         let grey = everywhere(ink);
         let rows = cells.get_mut(first * (WIDTH / 8)..).unwrap_or_default().chunks_exact_mut(WIDTH / 8);
-        for (row, &[low, high]) in rows.zip(spans) {
-            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
-            if low > high {
-                continue;
-            }
-            let (low, high) = (low as usize, high as usize);
+        for (row, span) in rows.zip(spans) {
+            let Some([low, high]) = inside(span, WIDTH) else { continue };
             let (head, tail) = (u32::MAX >> (low % 8 * 4), u32::MAX << (28 - high % 8 * 4));
             let (from, to) = (low / 8, high / 8);
             let Some(left) = row.get_mut(from) else { continue };

@@ -1,5 +1,6 @@
 //! Pages of eight rows, a byte a column with the top row in its lowest bit: SSD1306, SH1106, PCD8544.
 
+use super::frame::inside;
 use super::{BAND, Cursor, Layout};
 use embedded_graphics::pixelcolor::BinaryColor;
 
@@ -77,7 +78,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         *cell = if ink.is_on() { *cell | cursor.mask as u8 } else { *cell & !cursor.mask as u8 };
     }
 
-    /// The same bit of consecutive bytes.
+    /// Writes one bit of consecutive bytes.
     #[inline(always)]
     fn span(cells: &mut [u8], y: usize, [from, to]: [usize; 2], ink: BinaryColor) {
         let (row, mask) = (y / BAND * WIDTH, 1u8 << (y % BAND));
@@ -89,7 +90,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         }
     }
 
-    /// The same bit of consecutive bytes, four at a time.
+    /// Writes one bit of consecutive bytes in each row, four bytes at a time.
     #[inline(always)]
     fn spans(cells: &mut [u8], first: usize, mut spans: &[[i16; 2]], ink: BinaryColor) {
         let on = ink.is_on();
@@ -98,13 +99,12 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
             if spans.is_empty() {
                 return;
             }
-            while let Some((&[low, high], rest)) = spans.split_first() {
+            while let Some((span, rest)) = spans.split_first() {
                 if mask == 1 << BAND {
                     break;
                 }
-                let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
-                if low <= high {
-                    line(page.get_mut(low as usize..=high as usize).unwrap_or_default(), mask as u8, on);
+                if let Some([low, high]) = inside(span, WIDTH) {
+                    line(page.get_mut(low..=high).unwrap_or_default(), mask as u8, on);
                 }
                 mask <<= 1;
                 spans = rest;

@@ -1,6 +1,6 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
-use super::frame::{CALL, fill};
+use super::frame::{CALL, fill, inside};
 use super::{Cell, InRows, Layout};
 use core::hint::black_box;
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
@@ -106,10 +106,9 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
         let colour = RawU16::from(ink).into_inner();
         let both = black_box(Pair([colour; 2]));
         let rows = cells.get_mut(first * (WIDTH / 2)..).unwrap_or_default().chunks_exact_mut(WIDTH / 2);
-        for (row, &[low, high]) in rows.zip(spans) {
-            let (low, high) = (i32::from(low).max(0), i32::from(high).min(WIDTH as i32 - 1));
-            if low <= high {
-                line(row, [low as usize, high as usize], both);
+        for (row, span) in rows.zip(spans) {
+            if let Some(columns) = inside(span, WIDTH) {
+                line(row, columns, both);
             }
         }
     }

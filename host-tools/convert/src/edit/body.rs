@@ -11,9 +11,9 @@
 //! from its thigh, in that scale, and to a height that is off by at most 0.7 cm over the ground of the body, whose height is 0. In the air a leg points where
 //! the source's does. Within 0.7 cm nothing is corrected, because a leg that is nearly straight would have to bend far for it.
 
-use super::display::{Pose, add, aim, dot, pose, stands, subtract, transposed};
+use super::display::{Pose, add, aim, cross, dot, norm, pose, stands, subtract, transposed};
 use super::display_names::{sources, sources_of_body};
-use super::facing::{cross, facing};
+use super::facing::facing;
 use super::rotation::{between, turns_freely, up, write};
 use super::sides::parts;
 use crate::error::{Error, Setting, require};
@@ -500,10 +500,6 @@ fn turn_between(from: [f64; 3], to: [f64; 3]) -> Matrix {
 
 fn rotated(pose: Pose, turn: &Matrix) -> Pose {
     pose.into_iter().map(|(own, place)| (product(turn, &own), apply(turn, place))).collect()
-}
-
-fn norm(vector: [f64; 3]) -> f64 {
-    dot(vector, vector).sqrt()
 }
 
 fn unit(vector: [f64; 3]) -> [f64; 3] {

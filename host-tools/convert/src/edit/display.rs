@@ -141,8 +141,12 @@ pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(super) fn norm(vector: [f64; 3]) -> f64 {
+    dot(vector, vector).sqrt()
 }
 
 pub(crate) fn transposed(matrix: &Matrix) -> Matrix {

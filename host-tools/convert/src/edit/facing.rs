@@ -1,5 +1,6 @@
 //! The direction in which a figure faces, and the joints by which it travels.
 
+use super::display::{cross, norm};
 use super::display_names::found;
 use super::rotation::up;
 use super::sides::{Side, counterparts, parts};
@@ -54,12 +55,4 @@ pub(super) fn carriers(motion: &Motion) -> Vec<usize> {
     };
     let (moving, still): (Vec<usize>, Vec<usize>) = (0..motion.rig.joints.len()).filter(placed).partition(moves);
     moving.into_iter().chain(still).collect()
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn norm(vector: [f64; 3]) -> f64 {
-    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

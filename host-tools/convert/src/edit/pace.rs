@@ -1,8 +1,8 @@
 //! A way for a figure that treads on the spot.
 
 use super::contacts::feet;
-use super::display::{pose, transposed};
-use super::facing::{carriers, facing, norm};
+use super::display::{norm, pose, transposed};
+use super::facing::{carriers, facing};
 use super::footsteps::{goes_over, ground, tracks};
 use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, apply};

@@ -44,7 +44,7 @@ impl Maker<'_, '_> {
         Ok(())
     }
 
-    /// Warns if the clips travel by different joints, of which the machine moves one.
+    /// Warns if the clips travel by different joints: the machine moves the figure by one joint.
     pub(super) fn warn_of_travel(&mut self, bank: &Bank<'_>) -> Result<()> {
         if let Some(note) = pantin_convert::bank::travel(bank, Memory::default())? {
             self.warnings.push(Warning::new(note.text, note.remedy));
