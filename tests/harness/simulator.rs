@@ -88,8 +88,8 @@ pub struct Reading {
 }
 
 /// The pictures of the Game Boy Advance's display while `keys` steer the character of a bank: one for each reading.
-/// No feet are held there. `words` are those of the firmware's command line.
-pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading]) -> Result<Vec<Picture>> {
+/// No feet are held there. `words` are those of the firmware's command line; with `meets` it meets another character.
+pub fn steer(bank: &[u8], meets: bool, keys: &[SteerKey], words: &[&str], readings: &[Reading]) -> Result<Vec<Picture>> {
     /// In place of the buttons that leave.
     const LEAVE: u16 = 1 << 15;
     let mut pictures = vec![];
@@ -97,8 +97,9 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading
         |framebuffer: &mut Framebuffer<IndexedRows<240, 160, 19200>>| pictures.push(picture(crate::gba::LCD, framebuffer));
     let readings = readings.iter().copied().chain([Reading { ticks: 1, held: LEAVE }]).collect();
     let mut simulator = Simulator::<Rotation, _, _> { readings, ..Simulator::new(present) };
-    let options = Options { feet: false, ..Options::parse(words.iter().copied()) };
-    let exit = pantin_app::steer::<_, 64>(bank, keys, LEAVE, options, &mut Framebuffer::new(), &mut simulator);
+    let options = Options { feet: false, other_look: dancer()?, ..Options::parse(words.iter().copied()) };
+    let program = if meets { pantin_app::meet::<_, 64> } else { pantin_app::steer::<_, 64> };
+    let exit = program(bank, keys, LEAVE, options, &mut Framebuffer::new(), &mut simulator);
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }

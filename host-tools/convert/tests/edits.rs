@@ -320,38 +320,39 @@ fn a_wrong_body_is_named_as_such_in_one_line() {
     assert!(!error.contains('\n') && !error.contains("retarget"), "{error}");
 }
 
+/// A figure that stands and goes ahead, built facing ahead or a quarter of a turn aside: all joints turn about the vertical by their offsets alone, and in the motion.
+fn standing(quarter: bool) -> String {
+    let at = |[x, y, z]: [f64; 3]| if quarter { format!("{z} {y} {}", -x) } else { format!("{x} {y} {z}") };
+    let mut out = String::from("keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n");
+    let mut joint = |name: &str, parent: &str, offset: [f64; 3], channels: &str| {
+        out += &format!("joint {name}{parent} offset {} channels {channels}\n", at(offset));
+    };
+    joint("Hips", "", [0.0, 90.0, 0.0], "Xposition Yposition Zposition Zrotation Xrotation Yrotation");
+    joint("Spine", " parent Hips", [0.0, 20.0, 0.0], "Zrotation Xrotation Yrotation");
+    joint("Head", " parent Spine", [0.0, 40.0, 0.0], "Zrotation Xrotation Yrotation");
+    for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
+        for (name, parent, offset) in [
+            ("Arm", "Spine", [18.0 * x, 30.0, 0.0]),
+            ("ForeArm", "Arm", [28.0 * x, 0.0, 0.0]),
+            ("Hand", "ForeArm", [24.0 * x, 0.0, 0.0]),
+            ("UpLeg", "Hips", [9.0 * x, -5.0, 0.0]),
+            ("Leg", "UpLeg", [0.0, -42.0, 0.0]),
+            ("Foot", "Leg", [0.0, -40.0, 0.0]),
+        ] {
+            let parent = if ["Spine", "Hips"].contains(&parent) { parent.into() } else { format!("{side}{parent}") };
+            joint(&format!("{side}{name}"), &format!(" parent {parent}"), offset, "Zrotation Xrotation Yrotation");
+        }
+    }
+    let way = |frame: usize| at([0.0, 90.0, 4.0 * frame as f64]);
+    out + &format!("keys linear Hips\n 0 {} 0 0 0\n 30 {} 0 0 0\n", way(0), way(30))
+}
+
 #[test]
 fn a_figure_that_was_built_facing_another_way_faces_as_its_body() {
-    // All joints turn about the vertical by their offsets alone, and in the motion.
-    let text = |quarter: bool| {
-        let at = |[x, y, z]: [f64; 3]| if quarter { format!("{z} {y} {}", -x) } else { format!("{x} {y} {z}") };
-        let mut out = String::from("keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n");
-        let mut joint = |name: &str, parent: &str, offset: [f64; 3], channels: &str| {
-            out += &format!("joint {name}{parent} offset {} channels {channels}\n", at(offset));
-        };
-        joint("Hips", "", [0.0, 90.0, 0.0], "Xposition Yposition Zposition Zrotation Xrotation Yrotation");
-        joint("Spine", " parent Hips", [0.0, 20.0, 0.0], "Zrotation Xrotation Yrotation");
-        joint("Head", " parent Spine", [0.0, 40.0, 0.0], "Zrotation Xrotation Yrotation");
-        for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
-            for (name, parent, offset) in [
-                ("Arm", "Spine", [18.0 * x, 30.0, 0.0]),
-                ("ForeArm", "Arm", [28.0 * x, 0.0, 0.0]),
-                ("Hand", "ForeArm", [24.0 * x, 0.0, 0.0]),
-                ("UpLeg", "Hips", [9.0 * x, -5.0, 0.0]),
-                ("Leg", "UpLeg", [0.0, -42.0, 0.0]),
-                ("Foot", "Leg", [0.0, -40.0, 0.0]),
-            ] {
-                let parent = if ["Spine", "Hips"].contains(&parent) { parent.into() } else { format!("{side}{parent}") };
-                joint(&format!("{side}{name}"), &format!(" parent {parent}"), offset, "Zrotation Xrotation Yrotation");
-            }
-        }
-        let way = |frame: usize| at([0.0, 90.0, 4.0 * frame as f64]);
-        out + &format!("keys linear Hips\n 0 {} 0 0 0\n 30 {} 0 0 0\n", way(0), way(30))
-    };
     let folder = tempfile::tempdir().unwrap();
     let paths = [("ahead.keys", false), ("aside.keys", true)].map(|(name, quarter)| {
         let path = folder.path().join(name);
-        std::fs::write(&path, text(quarter)).unwrap();
+        std::fs::write(&path, standing(quarter)).unwrap();
         path
     });
     let on = Edits::new().retarget(pantin_convert::edit::Body::Of(paths[0].clone()));
@@ -387,5 +388,30 @@ fn a_capture_that_runs_gets_no_other_way_by_its_feet() {
         let found: f64 = noted.text.split(' ').find_map(|word| word.parse().ok()).unwrap();
         println!("{name}: {found} of {speed} cm a second");
         assert!((found / speed - 1.0).abs() < 0.15, "{name}: {found}");
+    }
+}
+
+#[test]
+fn a_joint_above_the_hips_goes_along_with_them() {
+    // As captures have it: the root stays at the origin, and the hips begin metres away.
+    let channels = "Xposition Yposition Zposition Zrotation Xrotation Yrotation";
+    let own = format!("joint Hips offset 0 90 0 channels {channels}");
+    let below = format!("joint Root offset 0 0 0 channels {channels}\njoint Hips parent Root offset 0 0 0 channels {channels}");
+    let text = standing(false);
+    assert!(text.contains(&own) && text.contains("0 0 90 0 "), "{text}");
+    let text = text.replace(&own, &below).replace(" 0 0 90 0 ", " 0 0 90 -400 ").replace(" 30 0 90 120 ", " 30 0 90 -280 ");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.keys");
+    std::fs::write(&path, text).unwrap();
+    let far = read(&path);
+    let on = edited(&Edits::new().retarget(pantin_convert::edit::Body::Of(path)), &far);
+    for frame in 0..on.frames {
+        let places = positions(&on.rig, &on.values, frame);
+        let [root, hips] = [places[0], places[1]];
+        assert!(
+            (root[0] - hips[0]).hypot(root[2] - hips[2]) < 1e-6 && (hips[1] - root[1] - 90.0).abs() < 1e-6,
+            "{frame}: {root:?} {hips:?}"
+        );
+        assert!((hips[2] - (4.0 * frame as f64 - 400.0)).abs() < 1e-6, "{frame}: {hips:?}");
     }
 }

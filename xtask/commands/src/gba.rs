@@ -1,4 +1,4 @@
-//! `cargo xtask gba [--clip FILE]... [--solid] [-o OUT]`: a cartridge image for the Game Boy Advance.
+//! `cargo xtask gba [--clip FILE]... [--solid] [--meet] [-o OUT]`: a cartridge image for the Game Boy Advance.
 //!
 //! ```text
 //! $ cargo xtask gba
@@ -22,6 +22,9 @@ pub struct Gba {
     /// Draw bodies with volume, with 30 pictures per second
     #[arg(long)]
     solid: bool,
+    /// Let the steered character meet another one, which reacts to it, with 30 pictures per second
+    #[arg(long)]
+    meet: bool,
     /// The file
     #[arg(short, value_name = "OUT", default_value = "pantin.gba")]
     out: PathBuf,
@@ -33,7 +36,8 @@ impl Gba {
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
         let (features, drawn) = if self.solid { (gba::SOLID, Drawn::Solid) } else { (gba::LINES, Drawn::Lines) };
         let clips = if self.clip.is_empty() { clips::own(folder.path(), drawn)? } else { self.clip };
-        let image = gba::image(features, &clips.iter().map(PathBuf::as_path).collect::<Vec<&Path>>())?;
+        let features = if self.meet { format!("{features},meet") } else { features.into() };
+        let image = gba::image(&features, &clips.iter().map(PathBuf::as_path).collect::<Vec<&Path>>())?;
         let most = if self.solid { gba::MOST_SOLID } else { gba::MOST };
         ensure!(image.len() <= most, "{} bytes; there is room for {most}", image.len());
         write_whole(&self.out, &image)?;

@@ -13,6 +13,10 @@ mod timer;
 
 use core::fmt::Write;
 use display::Lcd;
+#[cfg(feature = "meet")]
+use pantin_app::meet as character;
+#[cfg(all(feature = "steer", not(feature = "meet")))]
+use pantin_app::steer as character;
 use pantin_app::{Board, Options, TextScreen, run};
 use pantin_figure::surface::Framebuffer;
 
@@ -37,14 +41,7 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        pantin_app::steer::<_, CHANNELS>(
-            board_common::CHARACTER,
-            &keys::STEER,
-            keys::SELECT,
-            options(),
-            &mut framebuffer,
-            &mut board,
-        );
+        character::<_, CHANNELS>(board_common::CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
         board.overlay([""; 2]);
     }
     loop {
@@ -69,6 +66,8 @@ fn options() -> Options {
         solid: true,
         #[cfg(feature = "solid")]
         look: board_common::LOOK,
+        #[cfg(all(feature = "meet", feature = "solid"))]
+        other_look: board_common::OTHER_LOOK,
         #[cfg(feature = "neck")]
         neck: true,
         ..Options::parse([])

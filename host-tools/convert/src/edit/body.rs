@@ -411,13 +411,18 @@ impl<'a> Plan<'a> {
         apply(&transposed(&rest[parent].0), subtract(rest[joint].1, rest[parent].1))
     }
 
-    /// Where the hips, or a joint above them, should be in the world: there as far from the hips as at rest.
+    /// Where the hips, or a joint above them, should be in the world: there as high over the hips as at rest, and aside as the body is built. In a capture's first
+    /// frame, which may be the rest, a joint above the hips often stands at the origin, metres away, and the figure would swing about it.
     fn place(&self, joint: usize, carrier: usize, hips: [f64; 3]) -> Option<[f64; 3]> {
-        let mut at = Some(carrier);
-        while at.is_some_and(|at| at != joint) {
-            at = at.and_then(|at| self.rig.joints[at].parent);
+        let rest = &self.body.rest;
+        let (mut at, mut built) = (carrier, hips);
+        while at != joint {
+            let parent = self.rig.joints[at].parent?;
+            built = subtract(built, apply(&rest[parent].0, self.rig.joints[at].offset));
+            at = parent;
         }
-        at.map(|_| add(hips, subtract(self.body.rest[joint].1, self.body.rest[carrier].1)))
+        let height = dot(add(hips, subtract(subtract(rest[joint].1, rest[carrier].1), built)), self.vertical);
+        Some(add(built, self.vertical.map(|x| x * height)))
     }
 
     /// How far the written frame is from the source.

@@ -51,8 +51,9 @@ fn open(text: String) -> Error {
     Error::setting(Setting::Loop, text)
 }
 
-/// Joints that the closed seam leaves farther than this from each other, in cm, are not closed.
-const CLOSED_CM: f64 = 1e-6;
+/// Joints that the closed seam leaves farther than this from each other, in cm, are not closed. Angles that turn alike another way come out of a matrix,
+/// which blurs them where two axes nearly coincide.
+const CLOSED_CM: f64 = 1e-3;
 
 /// Closes `motion`. Refuses a seam that is more than `most`, naming its worst joint or channel.
 pub fn close(motion: &Motion, most: Most) -> Result<Closed> {

@@ -2,7 +2,8 @@
 //!
 //! Told are the words left and right anywhere in a name (`LeftArm`, `mouthSmile_Left`), the letters l and r as a word of their own
 //! (`UpperArm_L`, `l_shoulder`, `Bip01 L Thigh`), and as a name's first letter where a counterpart with the other letter
-//! is there too (`lfemur` and `rfemur`, `LHipJoint`). What stands in front of a colon, and what all names begin with, says nothing.
+//! is there too (`lfemur` and `rfemur`, `LHipJoint`). What stands in front of a colon, Rigify's `DEF-` of bones that deform, and what all names
+//! begin with, say nothing.
 
 use std::collections::HashMap;
 
@@ -80,9 +81,10 @@ fn letters(name: &str) -> String {
     name.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// The names without what stands in front of a colon or is common to all of them up to a mark that is no letter.
+/// The names without what stands in front of a colon, without `DEF-`, and without what is common to all of them up to a mark that is no letter.
 fn without_common(names: &[String]) -> Vec<&str> {
     let after_colon = names.iter().map(|name| name.rsplit(':').next().unwrap_or_default());
+    let after_colon = after_colon.map(|name| name.strip_prefix("DEF-").unwrap_or(name));
     let names: Vec<&str> = after_colon.collect();
     let mut named = names.iter().filter(|name| !name.is_empty());
     let first = named.next().copied().unwrap_or_default();

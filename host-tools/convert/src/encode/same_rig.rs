@@ -65,9 +65,17 @@ fn in_scalars(one: &Rig, other: &Rig) -> Option<String> {
             format!("channel `{}` stands where `{}` is expected", b.name, a.name)
         });
     }
-    (one.scalars.len() != other.scalars.len())
-        .then(|| format!("it has {} channels that move no joint instead of {}", other.scalars.len(), one.scalars.len()))
+    let (count, other_count) = (one.scalars.len(), other.scalars.len());
+    let more = if other_count > count { &other.scalars[count..] } else { &one.scalars[other_count..] };
+    let named: Vec<String> = more.iter().take(LISTED).map(|scalar| format!("`{}`", scalar.name)).collect();
+    let rest = if more.len() > LISTED { format!(" and {} more", more.len() - LISTED) } else { String::new() };
+    let which = if other_count > count { "also has" } else { "lacks" };
+    let noun = if more.len() == 1 { "channel that moves no joint" } else { "channels that move no joint" };
+    (!more.is_empty()).then(|| format!("it {which} {} {noun}: {}{rest}", more.len(), named.join(", ")))
 }
+
+/// Channels that are named at most.
+const LISTED: usize = 4;
 
 fn kinds(kinds: &[Kind]) -> String {
     if kinds.is_empty() { "(none)".into() } else { kinds.iter().map(|kind| format!("{kind:?}")).collect::<Vec<_>>().join(" ") }

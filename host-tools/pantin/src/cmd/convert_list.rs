@@ -43,6 +43,9 @@ pub struct ListEntry {
     pub edits: Edits,
     #[command(flatten)]
     bounds: ChannelBound,
+    /// Refused with its reason, as what is above: the proposals of --find-loop have it.
+    #[arg(long)]
+    max_error: Option<String>,
 }
 
 /// Whether an input is a list, by its name.
@@ -67,7 +70,8 @@ pub fn read(path: &Path) -> Result<Vec<(String, ListEntry)>> {
             let first = said.lines().next().unwrap_or_default();
             anyhow!("{place}: {}", first.trim_start_matches("error: "))
         })?;
-        ensure!(!line.bounds.is_given(), "{place}: bounds are for all motions: they belong to the command, not to a line");
+        let bounded = line.bounds.is_given() || line.max_error.is_some();
+        ensure!(!bounded, "{place}: bounds are for all motions: they belong to the command, not to a line");
         line.motion = folder.join(&line.motion);
         line.edits.read_from(folder);
         line.skeleton = line.skeleton.map(|path| folder.join(path));
@@ -77,21 +81,22 @@ pub fn read(path: &Path) -> Result<Vec<(String, ListEntry)>> {
     Ok(lines)
 }
 
-/// The words of a line: between spaces, or within double quotes; a # begins a comment.
+/// The words of a line: between spaces, or within double or single quotes; a # begins a comment.
 fn words(line: &str) -> Result<Vec<String>> {
-    let (mut words, mut word, mut quoted) = (Vec::new(), None::<String>, false);
+    let (mut words, mut word, mut quoted) = (Vec::new(), None::<String>, None);
     for letter in line.chars() {
-        match letter {
-            '"' => {
-                quoted = !quoted;
+        match (letter, quoted) {
+            ('"' | '\'', None) => {
+                quoted = Some(letter);
                 word.get_or_insert_default();
             }
-            '#' if !quoted && word.is_none() => break,
-            _ if letter.is_whitespace() && !quoted => words.extend(word.take()),
+            (_, Some(mark)) if letter == mark => quoted = None,
+            ('#', None) if word.is_none() => break,
+            (_, None) if letter.is_whitespace() => words.extend(word.take()),
             _ => word.get_or_insert_default().push(letter),
         }
     }
-    ensure!(!quoted, "a quotation mark without its end");
+    ensure!(quoted.is_none(), "a quotation mark without its end");
     words.extend(word);
     Ok(words)
 }
@@ -105,6 +110,8 @@ mod tests {
         assert_eq!(words(r#"  a.bvh --name "my walk" # and more"#).unwrap(), ["a.bvh", "--name", "my walk"]);
         assert_eq!(words("# nothing").unwrap(), Vec::<String>::new());
         assert_eq!(words(r#"a#b "" c"#).unwrap(), ["a#b", "", "c"]);
+        assert_eq!(words("a --drop '*.scale.*' \"Bob's\" '\"'").unwrap(), ["a", "--drop", "*.scale.*", "Bob's", "\""]);
         assert!(words(r#"a "b"#).is_err());
+        assert!(words("a 'b\"").is_err());
     }
 }

@@ -103,7 +103,7 @@ fn another_rig_is_refused_by_file_and_joint_and_nothing_is_written() {
         (text.replace("cm-per-unit 1", "cm-per-unit 2"), "its unit is 2 cm instead of 1 cm"),
         (
             text.replace("\nkeys discrete hips", "\nscalar smile scale 1\nkeys discrete hips"),
-            "it has 1 channels that move no joint instead of 0",
+            "it also has 1 channel that moves no joint: `smile`",
         ),
     ];
     for (other, message) in cases {
