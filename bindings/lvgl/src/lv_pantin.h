@@ -52,7 +52,8 @@ extern "C" {
 
 extern const lv_obj_class_t lv_pantin_class;
 
-/* Makes a face of 128 by 128 pixels; lv_obj_set_size takes up to 2047 each way. A size for which there is no memory shows nothing, and LVGL's log says so.
+/* Makes a face of 128 by 128 pixels; lv_obj_set_size takes up to 2047 each way. A size for which there is no memory shows nothing, and LVGL's log says so:
+ * LVGL's default LV_MEM_SIZE, 64 KB, is too small for 240 by 240 pixels of RGB565.
  * The face is the cartoon with our 23 emotes, at rest, which blinks, on a background of its own: black. NULL if LVGL's memory is used up. */
 lv_obj_t *lv_pantin_create(lv_obj_t *parent);
 

@@ -101,7 +101,7 @@ const REGIONS: [Region; 7] = [
     ("lower_corners", [54, 73], [40, 49], 25),
     ("brow_inner_lower", [48, 79], [15, 23], 16),
     ("brow_outer_raise", [48, 79], [15, 23], 18),
-    ("puff_cheeks", [42, 85], [30, 50], 45),
+    ("puff_cheeks", [42, 85], [30, 54], 45),
 ];
 
 #[test]

@@ -155,6 +155,8 @@ mod tests {
         for name in ["Servos/walk.h", "Face/hello.h", "SteerTFT/character.h", "SolidGC9A01/cat.h"] {
             assert!(fs::read_to_string(folder.join("examples").join(name)).unwrap().contains("_LEN"), "{name}");
         }
+        let readme = fs::read_to_string(folder.join("README.md")).unwrap();
+        assert!(!readme.contains("](../"), "the README links to a file that the folder lacks");
         assert!(!folder.join("tests").exists());
         // Again: the sources of an older version go.
         fs::write(folder.join("src/old.c"), "").unwrap();

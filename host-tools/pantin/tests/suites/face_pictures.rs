@@ -27,6 +27,8 @@ const NOSE: Region = Region { rows: [32, 41], columns: [0, 8] };
 const MOUTH: Region = Region { rows: [38, 51], columns: [0, 14] };
 /// The cheek's edge is part of the outline.
 const CHEEKS: Region = Region { rows: [30, 54], columns: [11, 24] };
+/// The jaw's curve beside the chin.
+const JAW_SIDES: Region = Region { rows: [48, 54], columns: [7, 14] };
 /// Mouth, chin and the outline around them.
 const JAW: Region = Region { rows: [38, 63], columns: [0, 22] };
 
@@ -38,7 +40,7 @@ const UNITS: [(&str, &[Region], usize); 38] = [
     ("lower_corners", &[MOUTH], 12),
     ("brow_inner_lower", &[BROWS], 6),
     ("brow_outer_raise", &[BROWS], 4),
-    ("puff_cheeks", &[CHEEKS], 12),
+    ("puff_cheeks", &[CHEEKS, JAW_SIDES], 12),
     ("joy", &[MOUTH], 12),
     ("sadness", &[MOUTH, BROWS], 18),
     ("surprise", &[JAW, BROWS], 40),
@@ -122,6 +124,34 @@ fn at_128x64_each_unit_changes_the_pixels_of_its_region_and_no_others() {
     for (with, alone) in [("open_mouth=0.4,mouth_close=0.7", "open_mouth=0.4"), ("open_mouth=0.3,tongue_up", "open_mouth=0.3")] {
         let [with, alone] = [with, alone].map(|sum| picture(&face.blueprint, &model, SMALL, sum));
         assert!(with.iter().zip(&alone).filter(|(a, b)| a != b).count() >= 3, "{unseen:?} are not seen");
+    }
+}
+
+/// For each of these rows the distance of its outermost bright pixel from the middle, and the number of bright pixels between that outline and the mouth.
+/// Pixels that touch the outline or lie beside it are part of it. A row in which darker lines hide the outline has none.
+fn outlines(pixels: &[u8], canvas: Canvas, rows: std::ops::Range<usize>) -> Vec<Option<(usize, usize)>> {
+    let width = usize::from(canvas.width);
+    let (middle, beside, mouth) = (width / 2, width / 60, width * 15 / 128);
+    let outline = |row: usize| {
+        let bright = |x: &usize| pixels[row * width + x] >= 150;
+        let from = (0..middle).find(bright)?;
+        Some((middle - from, (from + beside + 1..middle - mouth).filter(bright).count()))
+    };
+    rows.map(outline).collect()
+}
+
+#[test]
+fn puffed_cheeks_push_the_outline_outwards_and_leave_no_line_of_the_jaw_inside() {
+    let face = Face::new().unwrap();
+    let model = face.model().unwrap();
+    for (canvas, rows, least) in [(SMALL, 33..54, 2), (ROUND, 140..190, 8)] {
+        let [rest, puffed] = ["", "puff_cheeks"].map(|sum| picture(&face.blueprint, &model, canvas, sum));
+        let [rest, puffed] = [rest, puffed].map(|pixels| outlines(&pixels, canvas, rows.clone()));
+        let both = puffed.iter().zip(&rest).filter_map(|(puffed, rest)| puffed.zip(*rest));
+        let growths: Vec<usize> = both.map(|(puffed, rest)| puffed.0.saturating_sub(rest.0)).collect();
+        assert!(growths.len() * 10 >= rows.len() * 9, "{} rows have no outline", rows.len() - growths.len());
+        assert!(growths.iter().filter(|&&growth| growth >= least).count() * 10 > growths.len() * 7, "{growths:?}");
+        assert!(puffed.iter().flatten().all(|row| row.1 == 0), "bright pixels inside the outline: {puffed:?}");
     }
 }
 

@@ -17,6 +17,10 @@ const LOWER_LIP: f64 = 0.5;
 /// The wider smile: how far its corners go aside, and how much its cheeks bulge, as parts of the mouth's width.
 const WIDER: f64 = 0.17;
 const BULGE: f64 = 0.12;
+/// Points of Pantin's head that follow puffed cheeks, and how far, in millimetres: our rule, the paper moves the cheek alone. The outline runs between the cheek and
+/// the jaw's corner, and the jaw's curve below it, so that they would stay inside the cheeks. Forwards, because a corner that only went aside would stand out from the
+/// neck of a head seen from the side.
+pub const PUFF_FOLLOWERS: [(&str, Vector); 2] = [("jaw-corner", [23.0, 0.0, 16.0]), ("jaw", [8.0, 0.0, 0.0])];
 
 /// A unit of the paper, or one that its text mentions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +127,9 @@ fn of_head(head: &Head, subject: &Subject, rule: &Rule) -> Shape {
             deltas.retain(|entry| stored(&entry.0));
             // Points in the middle follow both sides, each by half.
             deltas.iter_mut().filter(|entry| entry.0 < head.middles).for_each(|entry| entry.1 = entry.1.map(|x| x / 2.0));
+            if rule.name == "puff_cheeks" {
+                deltas.extend(PUFF_FOLLOWERS.iter().filter_map(|&(name, way)| head.find(name).ok().map(|index| (index, way))));
+            }
             let arc = Some(arc(subject, rule));
             Shape { deltas, arc, ..shape(rule.name, Interpolation::ImprovedLinear, rule.sided) }
         }

@@ -34,7 +34,7 @@ fn home(folder: &TempDir) -> Result<PathBuf> {
     Ok(home)
 }
 
-/// Compiles the examples and the README's sketch for AVR, with the Arduino core and declared display libraries.
+/// Compiles the examples and the README's sketches for AVR, with the Arduino core and declared display libraries.
 pub fn examples(folder: &TempDir) -> Result<()> {
     if !Path::new(CORE).is_dir() {
         let mut install = Command::new("apt-get");
@@ -45,7 +45,8 @@ pub fn examples(folder: &TempDir) -> Result<()> {
         }
     }
     let home = home(folder)?;
-    let mut sketches = vec![readme_sketch(folder)?];
+    let mut sketches = display_sketches(folder)?;
+    sketches.push(readme_sketch(folder)?);
     for entry in std::fs::read_dir(home.join("examples"))? {
         let name = entry?.file_name();
         sketches.push(home.join("examples").join(&name).join(&name).with_extension("ino"));
@@ -113,6 +114,22 @@ fn readme_sketch(folder: &TempDir) -> Result<PathBuf> {
     let written = folder.path().join("readme.ino");
     std::fs::copy(home.join("examples/Servos/walk.h"), folder.path().join("walk.h"))?;
     std::fs::write(&written, sketch)?;
+    Ok(written)
+}
+
+/// Writes the README's sketches of faces and characters, with the displays that they leave to the reader.
+fn display_sketches(folder: &TempDir) -> Result<Vec<PathBuf>> {
+    let home = home(folder)?;
+    let readme = std::fs::read_to_string(home.join("README.md"))?;
+    std::fs::copy(home.join("examples/SteerTFT/character.h"), folder.path().join("character.h"))?;
+    let sketches = readme.split("```cpp\n").skip(2).filter_map(|rest| rest.split("```").next()).zip(1..);
+    let write = |(sketch, number): (&str, usize)| {
+        let written = folder.path().join(format!("readme-{number}.ino"));
+        std::fs::write(&written, format!("#include <TFT_eSPI.h>\nTFT_eSPI display;\nTFT_eSprite sprite(&display);\n{sketch}"))?;
+        Ok(written)
+    };
+    let written: Vec<PathBuf> = sketches.map(write).collect::<Result<_>>()?;
+    ensure!(written.len() == 2, "the README has {} sketches for displays", written.len());
     Ok(written)
 }
 

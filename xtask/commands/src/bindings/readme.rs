@@ -11,7 +11,8 @@ use tempfile::TempDir;
 use super::{home, output};
 
 /// Compiles the first program with the README's own command, beside the header that `pantin expand` writes, and compares the angles that it prints. The
-/// program that opens a file opens one and a part of it. The other programs are compiled alone.
+/// program that opens a file opens one and a part of it. The other programs are compiled alone, as C and as C++. Each row of the table of parts
+/// names all files that it needs.
 pub fn run(folder: &TempDir) -> Result<()> {
     let place = folder.path().join("readme");
     std::fs::create_dir_all(&place)?;
@@ -34,21 +35,36 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let printed = String::from_utf8(output(shell)?.stdout)?;
     let expected = angles(&std::fs::read(&clip)?)?;
     ensure!(printed == expected, "the program prints\n{printed}");
+    parts(&place, &readme)?;
     let others: Vec<&str> = readme.split("```c\n").skip(2).filter_map(|rest| rest.split("```").next()).collect();
     for (index, program) in others.iter().enumerate() {
         let source = place.join(format!("further-{index}.c"));
         std::fs::write(&source, program)?;
-        let mut gcc = Command::new("gcc");
-        gcc.current_dir(&place)
-            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Isrc", "-I.", "-c"])
-            .arg(&source)
-            .args(["-o", "further.o"]);
-        output(gcc)?;
+        for (compiler, language) in [("gcc", &["-std=c99"][..]), ("g++", &["-x", "c++", "-std=c++11"])] {
+            let mut command = Command::new(compiler);
+            command.current_dir(&place).args(language).args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-Isrc", "-I.", "-c"]);
+            command.arg(&source).args(["-o", "further.o"]);
+            output(command)?;
+        }
     }
     println!("   {} frames, {} further programs", expected.lines().count(), others.len());
     ensure!(others.len() >= 4, "few programs");
     let opens = others.iter().find(|program| program.contains("int open_file(")).context("no program opens a file")?;
     open_file(&place, opens, &clip)
+}
+
+/// Links the files of each row of the table of parts, which need no others.
+fn parts(place: &Path, readme: &str) -> Result<()> {
+    let rows = readme.lines().skip_while(|line| *line != "| to use | compile with your program |").skip(2);
+    let rows: Vec<&str> = rows.take_while(|line| line.starts_with('|')).collect();
+    ensure!(rows.len() >= 8, "the README's table of parts has {} rows", rows.len());
+    for row in rows {
+        let files = row.split('`').filter(|word| word.ends_with(".c")).map(|name| format!("src/{name}"));
+        let mut gcc = Command::new("gcc");
+        gcc.current_dir(place).args(["-std=c99", "-fPIC", "-shared", "-Wl,-z,defs", "-Isrc"]).args(files).args(["-o", "part.so"]);
+        output(gcc).with_context(|| row.to_owned())?;
+    }
+    Ok(())
 }
 
 /// Opens a clip, a part of it and no file by the program of the README.
