@@ -291,7 +291,10 @@ fn the_pages_lips_are_the_firmwares() {
             count += 1;
         }
     }
-    assert!(["viseme_aa", "viseme_e", "viseme_i", "viseme_o", "viseme_ss"].iter().all(|name| strongest.contains(name)), "{strongest:?}");
+    assert!(
+        ["viseme_aa", "viseme_e", "viseme_i", "viseme_o", "viseme_ss"].iter().all(|name| strongest.contains(name)),
+        "{strongest:?}"
+    );
     println!("{count} parts of sound, {strongest:?}");
 }
 
@@ -321,7 +324,9 @@ fn open_vowels() -> Vec<u8> {
     let samples: Vec<u8> = (0..4 * RATE).flat_map(|at| sample(at).to_le_bytes()).collect();
     let u32s = |value: usize| (value as u32).to_le_bytes();
     let mut wav = [&b"RIFF"[..], &u32s(36 + samples.len()), b"WAVEfmt ", &u32s(16), &[1, 0, 1, 0]].concat();
-    wav.extend([&u32s(RATE as usize)[..], &u32s(2 * RATE as usize), &[2, 0, 16, 0], b"data", &u32s(samples.len()), &samples].concat());
+    wav.extend(
+        [&u32s(RATE as usize)[..], &u32s(2 * RATE as usize), &[2, 0, 16, 0], b"data", &u32s(samples.len()), &samples].concat(),
+    );
     wav
 }
 

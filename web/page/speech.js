@@ -36,11 +36,11 @@ const SENTENCE = [
 // Of the three formants: loudness, and how narrow they are.
 const FORMANTS = [[1, 6], [0.6, 9], [0.3, 11]];
 
-/** Makes the sentence's sound. Returns what is heard, and its length in seconds. */
+// Makes the sentence's sound. Returns what is heard, and its length in seconds.
 export function sentence(context) {
   const start = context.currentTime + 0.05;
   const ends = start + SENTENCE.reduce((sum, [seconds]) => sum + seconds, 0);
-  const out = new GainNode(context, { gain: 0.5 });
+  const out = new GainNode(context, { gain: 1.6 });
   const voice = new OscillatorNode(context, { type: "sawtooth" });
   const [loud, hiss] = [0, 0].map((gain) => new GainNode(context, { gain }));
   const formants = FORMANTS.map(([gain, Q]) => {
@@ -108,10 +108,8 @@ async function microphone() {
   }
 }
 
-/**
- * Lets the face of a player speak: by a sentence, or with `isLive` by the microphone, until the sentence ends or `signal` is aborted. `begun` is called when it does, `heard` gets the strongest viseme's name,
- * or an empty text. Throws an error with the reason if there is no sound.
- */
+// Lets the face of a player speak: by a sentence, or with `isLive` by the microphone, until the sentence ends or `signal` is aborted. `begun` is called when it does, `heard` gets the strongest viseme's name,
+// or an empty text. Throws an error with the reason if there is no sound.
 export async function speak(player, { isLive, signal, begun, heard }) {
   const stream = isLive ? await microphone() : null;
   let context;

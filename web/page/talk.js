@@ -1,7 +1,7 @@
 // Lips for speech: the firmware's module pantin_face::talk in JavaScript, with the same integers bit for bit, without visemes that a speech engine names. That module
 // explains the steps and states the bounds by which all products fit 32 bits. In an audio worklet this script is the processor `talk`.
 
-/** The lowest and the highest rate of sound, in Hz. */
+// The lowest and the highest rate of sound, in Hz.
 export const RATES = [8000, 48000];
 const BAND_RATE = 8000;
 const HOP = 80;
@@ -26,7 +26,7 @@ const logarithm = (sum) => {
 const ramp = (level, none, full) => trunc((max(0, min(level - none, full - none)) * FULL) / (full - none));
 const part = (weight, of) => (weight * of) >>> 15;
 
-/** A mouth that speaks, for sound of `rate` samples a second. `weights` are those of MPEG-4's visemes 1 to 14, 0 to 32768. */
+// A mouth that speaks, for sound of `rate` samples a second. `weights` are those of MPEG-4's visemes 1 to 14, 0 to 32768.
 export class Talk {
   weights = new Array(VISEMES).fill(0);
   targets = new Array(VISEMES).fill(0);
@@ -48,7 +48,7 @@ export class Talk {
     this.rate = rate;
   }
 
-  /** Listens to samples of 16 bits. */
+  // Listens to samples of 16 bits.
   push(samples) {
     if (samples.length) this.silent = 0;
     for (const sample of samples) {
@@ -62,7 +62,7 @@ export class Talk {
     }
   }
 
-  /** Lets milliseconds pass. The mouth closes if no samples came for 150 ms. */
+  // Lets milliseconds pass. The mouth closes if no samples came for 150 ms.
   step(ms) {
     for (this.rest += ms; this.rest >= TICK_MS; this.rest -= TICK_MS) {
       this.silent = min(SILENT_MS, this.silent + TICK_MS);
@@ -135,7 +135,7 @@ export class Talk {
   }
 }
 
-/** Sound between -1 and 1 as samples of 16 bits. */
+// Sound between -1 and 1 as samples of 16 bits.
 export const samplesOf = (sound) => Array.from(sound, (value) => max(-32768, min(Math.round(value * 32768), 32767)));
 
 // Parts of 10 ms or a little more: weights change no more often.

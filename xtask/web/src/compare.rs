@@ -34,11 +34,14 @@ pub fn filled(site: &Path, page: &str) -> Result<String> {
         scripts.push(("the decoder alone, in JavaScript", sent(&decoder)?));
     }
     let marks = [WALK, OTHERS, ROWS].into_iter().chain(ARCHIVES.map(|(mark, _)| mark));
-    marks.map(|mark| page.contains(mark).then_some(()).with_context(|| format!("the page has no {mark}"))).collect::<Result<()>>()?;
+    marks
+        .map(|mark| page.contains(mark).then_some(()).with_context(|| format!("the page has no {mark}")))
+        .collect::<Result<()>>()?;
     let formats = others.iter().map(|(format, bytes)| (format!("the walk as {format}"), *bytes));
     let scripts = scripts.iter().map(|(name, bytes)| ((*name).to_owned(), *bytes));
     let all = std::iter::once(("the walk as a clip".to_owned(), bytes)).chain(formats).chain(scripts);
-    let rows: String = all.map(|(name, bytes)| format!("<tr><th scope=\"row\">{name}</th><td>{}</td></tr>", text(bytes))).collect();
+    let rows: String =
+        all.map(|(name, bytes)| format!("<tr><th scope=\"row\">{name}</th><td>{}</td></tr>", text(bytes))).collect();
     let others: Vec<String> = others.iter().map(|(format, bytes)| format!("{} as {format}", text(*bytes))).collect();
     let mut page = page.replace(WALK, &text(bytes)).replace(OTHERS, &others.join(", ")).replace(ROWS, &rows);
     for (mark, name) in ARCHIVES {

@@ -19,25 +19,21 @@ use crate::site::{listed, write};
 pub const LVGL: &str = "pantin-lvgl.zip";
 pub const ARDUINO: &str = "pantin-arduino.zip";
 
-/// Writes a clip as files of other programs beside it: a body as BVH and glTF, scalars alone as a table. Returns the ends of their names.
-pub fn exported(clip: &Path, bytes: &[u8]) -> Result<Vec<&'static str>> {
-    let clip_ = Clip::new_checked(bytes).map_err(|error| anyhow::anyhow!("{error}"))?;
-    let motion = Motion { looped: clip_.looped(), ..expand(&clip_)? };
-    let mut made: Vec<(&str, Vec<u8>)> = vec![];
-    if motion.rig.joints.is_empty() {
-        let mut table = vec![];
-        export::table::write(&motion, &mut table)?;
-        made.push(("csv", table));
+/// Writes a clip as files of other programs beside it: as glTF, and as BVH, or with scalars, which BVH cannot hold, as a table. Returns the ends of their names.
+pub fn exported(clip: &Path, bytes: &[u8]) -> Result<[&'static str; 2]> {
+    let opened = Clip::new_checked(bytes).map_err(|error| anyhow::anyhow!("{error}"))?;
+    let motion = Motion { looped: opened.looped(), ..expand(&opened)? };
+    let mut table = vec![];
+    let extension = if motion.rig.scalars.is_empty() {
+        export::bvh::write(&motion, export::bvh::Columns::ThreeRotations, &mut table)?;
+        "bvh"
     } else {
-        let mut bvh = vec![];
-        export::bvh::write(&motion, export::bvh::Columns::ThreeRotations, &mut bvh)?;
-        made.push(("bvh", bvh));
-        made.push(("glb", export::gltf::write(&motion)?));
-    }
-    for (extension, bytes) in &made {
-        write(&clip.with_extension(extension), bytes)?;
-    }
-    Ok(made.into_iter().map(|(extension, _)| extension).collect())
+        export::table::write(&motion, &mut table)?;
+        "csv"
+    };
+    write(&clip.with_extension(extension), &table)?;
+    write(&clip.with_extension("glb"), &export::gltf::write(&motion)?)?;
+    Ok([extension, "glb"])
 }
 
 /// Writes the archives.

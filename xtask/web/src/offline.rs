@@ -17,7 +17,8 @@ const KEPT: [&str; 7] = ["js", "css", "json", "ptn", "ptb", "look", "svg"];
 /// The script for a site whose other files are there.
 pub fn filled(site: &Path, script: &str) -> Result<String> {
     ensure!([BUILD, FILES].iter().all(|mark| script.contains(mark)), "{SCRIPT} has no place for the list of files");
-    let files: Vec<PathBuf> = [site.to_owned(), site.join("clips")].iter().map(|folder| listed(folder)).collect::<Result<Vec<_>>>()?.concat();
+    let files: Vec<PathBuf> =
+        [site.to_owned(), site.join("clips")].iter().map(|folder| listed(folder)).collect::<Result<Vec<_>>>()?.concat();
     let end = |file: &Path| file.extension().map(|end| end.to_string_lossy().into_owned()).unwrap_or_default();
     let files = files.into_iter().filter(|file| !["br", "gz"].contains(&&*end(file)) && !file.ends_with(SCRIPT));
     let (mut names, mut hash) = (vec![String::new()], 0xcbf2_9ce4_8422_2325_u64);
