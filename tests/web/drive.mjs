@@ -37,6 +37,8 @@ async function opened(browser, options = {}) {
   await page.waitForFunction(() => document.querySelector("#player").playable > 1);
   // Who cannot be seen does not play.
   await page.evaluate(() => document.querySelector("#player").scrollIntoView());
+  // The face beside it has come near, and fetches what it shows.
+  await page.waitForFunction(() => face.readyState === 4);
   return page;
 }
 

@@ -150,7 +150,7 @@ const faces = new IntersectionObserver((entries) => {
   faces.disconnect();
   import("./faces.js").catch((error) => ($("face-why").textContent = `The emotes cannot be fetched: ${error.message}.`));
 }, { rootMargin: "400px" });
-faces.observe($("face"));
+faces.observe($("face").closest("section"));
 
 // ---- links
 

@@ -38,6 +38,7 @@ async function answer(event, url) {
 self.addEventListener("fetch", (event) => {
   const { request } = event;
   // Of a file, whatever is asked about it: the page reads that itself.
-  const url = request.url.replace(/[?#].*/, "").replace(/\/index\.html$/, "/");
+  const { origin, pathname } = new URL(request.url);
+  const url = origin + pathname.replace(/\/index\.html$/, "/");
   if (request.method === "GET" && url.startsWith(here("")) && !request.headers.has("range")) event.respondWith(answer(event, url));
 });
