@@ -33,10 +33,8 @@ pub fn filled(site: &Path, page: &str) -> Result<String> {
         std::fs::write(&decoder, bundle::decoder()?).context("the decoder")?;
         scripts.push(("the decoder alone, in JavaScript", sent(&decoder)?));
     }
-    let marks = [WALK, OTHERS, ROWS].into_iter().chain(ARCHIVES.map(|(mark, _)| mark));
-    marks
-        .map(|mark| page.contains(mark).then_some(()).with_context(|| format!("the page has no {mark}")))
-        .collect::<Result<()>>()?;
+    let mut marks = [WALK, OTHERS, ROWS].into_iter().chain(ARCHIVES.map(|(mark, _)| mark));
+    marks.try_for_each(|mark| page.contains(mark).then_some(()).with_context(|| format!("the page has no {mark}")))?;
     let formats = others.iter().map(|(format, bytes)| (format!("the walk as {format}"), *bytes));
     let scripts = scripts.iter().map(|(name, bytes)| ((*name).to_owned(), *bytes));
     let all = std::iter::once(("the walk as a clip".to_owned(), bytes)).chain(formats).chain(scripts);
