@@ -9,6 +9,7 @@ use std::time::Duration;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use harness::display::{GREYS, Picture};
+use harness::download::BOARDS;
 use harness::web::browser::{Browser, skipped};
 use harness::web::{self, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
@@ -16,6 +17,7 @@ use pantin::Clip;
 use pantin_convert::expand::expand;
 use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::verify;
+use pantin_face::talk::{Talk, VISEMES};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::solid::look_text;
 use serde_json::{Value, json};
@@ -262,6 +264,86 @@ fn the_element_draws_the_lines_of_the_firmwares_face() {
     let output = node.args(clips).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// The page's lips are the firmware's, whatever they hear, and the page's own sentence has vowels that can be told apart.
+#[test]
+fn the_pages_lips_are_the_firmwares() {
+    if skipped("the page's lips") {
+        return;
+    }
+    let (mut count, mut strongest) = (0, BTreeSet::new());
+    for case in drive("talk", json!({})).as_array().unwrap() {
+        let number = |field: &str| case[field].as_u64().unwrap();
+        let bytes = decoded(case["samples"].as_str().unwrap());
+        let samples: Vec<i16> = bytes.chunks_exact(2).map(|pair| i16::from_le_bytes([pair[0], pair[1]])).collect();
+        let mut talk = Talk::new(number("rate") as u32).unwrap();
+        let expected: Vec<[u16; 14]> = serde_json::from_value(case["weights"].clone()).unwrap();
+        assert_eq!(expected.len(), samples.len().div_ceil(number("part") as usize));
+        for (index, (part, shown)) in samples.chunks(number("part") as usize).zip(&expected).enumerate() {
+            talk.push(part);
+            talk.step(number("ms") as u16);
+            assert_eq!(talk.weights(), shown, "{} at {} Hz, part {index}", case["name"], number("rate"));
+            let most = (0..14).max_by_key(|&viseme| shown[viseme]).unwrap();
+            if case["name"] == "sentence" && shown[most] > 8000 {
+                strongest.insert(VISEMES[most]);
+            }
+            count += 1;
+        }
+    }
+    assert!(
+        ["viseme_aa", "viseme_e", "viseme_i", "viseme_o", "viseme_ss"].iter().all(|name| strongest.contains(name)),
+        "{strongest:?}"
+    );
+    println!("{count} parts of sound, {strongest:?}");
+}
+
+#[test]
+fn the_pages_face_feels_and_speaks() {
+    if skipped("the page's face") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let sound = folder.path().join("sound.wav");
+    std::fs::write(&sound, open_vowels()).unwrap();
+    drive("faces", json!({ "sound": sound }));
+}
+
+/// A WAV file of open vowels and gaps: harmonics of 125 Hz, the loudest of them near 700 and 1100 Hz.
+fn open_vowels() -> Vec<u8> {
+    const RATE: u32 = 16_000;
+    let sample = |at: u32| {
+        let time = f64::from(at) / f64::from(RATE);
+        let tones = (1..20).map(|harmonic| 125.0 * f64::from(harmonic)).map(|hz| {
+            let near = |formant: f64| 1.0 / (1.0 + ((hz - formant) / 120.0).powi(2));
+            (near(730.0) + 0.7 * near(1090.0)) * (std::f64::consts::TAU * hz * time).sin()
+        });
+        let loud = if at / 8000 % 2 == 0 { 4000.0 } else { 0.0 };
+        (loud * tones.sum::<f64>()) as i16
+    };
+    let samples: Vec<u8> = (0..4 * RATE).flat_map(|at| sample(at).to_le_bytes()).collect();
+    let u32s = |value: usize| (value as u32).to_le_bytes();
+    let mut wav = [&b"RIFF"[..], &u32s(36 + samples.len()), b"WAVEfmt ", &u32s(16), &[1, 0, 1, 0]].concat();
+    wav.extend(
+        [&u32s(RATE as usize)[..], &u32s(2 * RATE as usize), &[2, 0, 16, 0], b"data", &u32s(samples.len()), &samples].concat(),
+    );
+    wav
+}
+
+#[test]
+fn the_page_names_every_board_that_has_images() {
+    let page = std::fs::read_to_string(paths::root().join("web/page/index.html")).unwrap();
+    let titles = BOARDS.map(|board| board.title).into_iter().collect::<BTreeSet<_>>();
+    let (_, list) = page.split_once("There are images for: ").unwrap();
+    let named = list.split_once(". ").unwrap().0.split(", ").collect::<BTreeSet<_>>();
+    assert_eq!(named, titles);
+}
+
+#[test]
+fn the_page_stays_when_the_network_goes() {
+    if !skipped("the page without a network") {
+        drive("offline", json!({}));
+    }
 }
 
 #[test]

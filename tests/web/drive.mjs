@@ -1,11 +1,13 @@
 // Drives the page in a headless Chromium as a user would: `node drive.mjs CASE JSON`. What a case asserts itself fails it; what it saw, it prints as JSON.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { createRequire } from "node:module";
 
 const { chromium } = createRequire(`${process.env.PLAYWRIGHT}/`)("playwright-core");
 const [, , name, words] = process.argv;
 const args = JSON.parse(words);
+const LAUNCH = { executablePath: process.env.CHROMIUM, args: ["--disable-gpu"], chromiumSandbox: process.getuid?.() !== 0 };
 
 // In the page: the canvas of a player as the greys of the display, a hexadecimal digit each, and a hash of any canvas.
 const HELPERS = () => {
@@ -17,9 +19,9 @@ const HELPERS = () => {
   };
 };
 
-// A context whose waits a busy machine does not end: there a picture may take minutes that takes a second elsewhere.
+// A context whose waits a busy machine does not end: there a picture may take minutes that takes a second elsewhere. Nothing stands between it and the server.
 async function patient(browser, options) {
-  const context = await browser.newContext(options);
+  const context = await browser.newContext({ serviceWorkers: "block", ...options });
   context.setDefaultTimeout(300_000);
   return context;
 }
@@ -35,6 +37,8 @@ async function opened(browser, options = {}) {
   await page.waitForFunction(() => document.querySelector("#player").playable > 1);
   // Who cannot be seen does not play.
   await page.evaluate(() => document.querySelector("#player").scrollIntoView());
+  // The face beside it has come near, and fetches what it shows.
+  await page.waitForFunction(() => face.readyState === 4);
   return page;
 }
 
@@ -729,6 +733,8 @@ const cases = {
       for (const colorScheme of ["light", "dark"]) {
         const one = await opened(browser, { viewport: { width, height: 844 }, colorScheme, reducedMotion: "reduce" });
         await one.waitForFunction(() => character.states.length && document.querySelector("#graph svg"));
+        await one.evaluate(() => document.querySelector("#face").scrollIntoView());
+        await one.waitForFunction(() => document.querySelectorAll("#emotes button").length === 23 && face.readyState === 4);
         await one.addScriptTag({ path: axe });
         const check = async (what) => {
           const found = await one.evaluate(async () => {
@@ -750,6 +756,11 @@ const cases = {
           faults.push(...found.map((fault) => `${width} ${colorScheme} ${what}: ${fault}`));
         };
         await check("page");
+        await one.evaluate(() => scrollTo(0, document.body.scrollHeight));
+        await one.context().grantPermissions([]);
+        await one.locator("#microphone").click();
+        await one.waitForFunction(() => document.querySelector("#face-why").textContent.startsWith("The face cannot speak"));
+        await check("a face without a microphone");
         await one.evaluate(() => (document.querySelector("#fold").open = false));
         if (args.folder) await one.screenshot({ path: `${args.folder}/page-${width}-${colorScheme}.png`, fullPage: true });
         if (width === 390) {
@@ -764,6 +775,178 @@ const cases = {
       }
     }
     assert.deepEqual(faults, []);
+  },
+
+  // The page's lips for its own sentence, noise and strange sound at several rates: samples of 16 bits, and the weights after each part of them.
+  async talk(page) {
+    return page.evaluate(async () => {
+      const [{ Talk, samplesOf }, { sentence }] = await Promise.all([import("./talk.js"), import("./speech.js")]);
+      const base64 = (samples) => btoa(Array.from(new Uint8Array(Int16Array.from(samples).buffer), (byte) => String.fromCharCode(byte)).join(""));
+      const cases = [];
+      const add = (name, rate, samples, part, ms) => {
+        const talk = new Talk(rate);
+        const weights = [];
+        for (let at = 0; at < samples.length; at += part) {
+          talk.push(samples.slice(at, at + part));
+          talk.step(ms);
+          weights.push([...talk.weights]);
+        }
+        cases.push({ name, rate, part, ms, samples: base64(samples), weights });
+      };
+      for (const rate of [16000, 44100]) {
+        const context = new OfflineAudioContext(1, 4 * rate, rate);
+        const [heard] = sentence(context);
+        heard.connect(context.destination);
+        add("sentence", rate, samplesOf((await context.startRendering()).getChannelData(0)), Math.round(rate / 100), 10);
+      }
+      let random = 7;
+      const noise = () => (random = (Math.imul(random, 1664525) + 1013904223) | 0) >> 16;
+      const list = (length, of) => Array.from({ length }, (_, index) => of(index));
+      for (const rate of [8000, 11025, 22050, 48000]) {
+        add("noise", rate, list(rate, noise), 97, 3);
+        add("soft noise", rate, list(rate, () => noise() >> 8), 480, 20);
+        add("the largest steps", rate, list(rate, (index) => ((index >> (1 + (index >> 11))) & 1 ? 32767 : -32768)), 333, 7);
+        add("a tone that rises", rate, list(2 * rate, (index) => Math.round(20000 * Math.sin((index * index * 0.8) / rate))), 128, 3);
+        add("gaps", rate, list(rate, (index) => ((index >> 10) & 1 ? noise() >> 2 : 0)), 64, 0);
+      }
+      return cases;
+    });
+  },
+
+  // The face: emotes, a sentence, a microphone that is refused, and one that hears what a file has.
+  async faces(page, browser) {
+    const ready = async (page) => {
+      await page.evaluate(() => document.querySelector("#face").scrollIntoView({ block: "center" }));
+      await page.waitForFunction(() => document.querySelectorAll("#emotes button").length === 23 && face.readyState === 4);
+    };
+    const pressed = (page) => page.locator(".face button[aria-pressed=true]").evaluateAll((all) => all.map((one) => one.dataset.name ?? one.id));
+    await ready(page);
+    await page.waitForFunction(() => !face.paused);
+    assert.deepEqual(await pressed(page), ["happy"]);
+    const names = await page.locator("#emotes button").evaluateAll((all) => all.map((one) => one.dataset.name));
+    const seen = new Set();
+    for (const name of names) {
+      await page.locator(`#emotes [data-name=${name}]`).click();
+      await page.waitForFunction((name) => document.querySelector("#emote-size").textContent.startsWith(`${name}: `) && face.src === null && face.readyState === 4, name);
+      assert.deepEqual(await pressed(page), [name]);
+      seen.add(await page.evaluate(() => (face.pause(), face.seek(face.frames >> 1), window.seen(face).hash)));
+    }
+    assert.equal(seen.size, 23, "each emote is another picture");
+    // Speech is fetched when it is asked for, moves the mouth, and ends by itself.
+    const fetched = () => page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name).filter((name) => /(speech|talk)\.js$/.test(name)).length);
+    assert.equal(await fetched(), 0);
+    const watch = (page) => page.evaluate(() => {
+      window.visemes = new Set();
+      new MutationObserver(() => window.visemes.add(document.querySelector("#viseme").textContent)).observe(document.querySelector("#viseme"), { childList: true });
+    });
+    await watch(page);
+    await page.locator("#sentence").click();
+    await page.waitForFunction(() => [...window.visemes].some((text) => text));
+    assert.deepEqual(await pressed(page), ["sentence"]);
+    assert.ok((await fetched()) > 0);
+    await page.waitForFunction(() => document.querySelector("#sentence").getAttribute("aria-pressed") === "false" && face.frames > 1);
+    assert.deepEqual(await pressed(page), ["winking"]);
+    // An emote ends it.
+    await page.locator("#sentence").click();
+    await page.waitForFunction(() => face.frames === 1);
+    await page.locator("#emotes [data-name=sad]").click();
+    await page.waitForFunction(() => document.querySelector("#emote-size").textContent.startsWith("sad: ") && document.querySelector("#sentence").getAttribute("aria-pressed") === "false");
+    // A microphone that is refused, and one that hears what a file has.
+    const sounds = ["--use-fake-device-for-media-stream", `--use-file-for-fake-audio-capture=${args.sound}`];
+    const other = await chromium.launch({ ...LAUNCH, args: [...LAUNCH.args, ...sounds] });
+    try {
+      const one = await opened(other, { reducedMotion: "reduce" });
+      await ready(one);
+      await one.context().grantPermissions([]);
+      await one.locator("#microphone").click();
+      await one.waitForFunction(() => document.querySelector("#face-why").textContent.includes("not allowed to use the microphone"));
+      await one.waitForFunction(() => document.querySelector("#microphone").getAttribute("aria-pressed") === "false" && face.frames > 1);
+      await one.context().grantPermissions(["microphone"]);
+      assert.equal(await one.evaluate(() => face.paused), true);
+      await watch(one);
+      await one.locator("#microphone").click();
+      await one.waitForFunction(() => window.visemes.has("\u201caa\u201d"));
+      assert.match(await one.locator("#face-why").textContent(), /follows the microphone/);
+      await one.locator("#microphone").click();
+      await one.waitForFunction(() => document.querySelector("#microphone").getAttribute("aria-pressed") === "false" && face.frames > 1);
+      assert.equal(await one.locator("#face-why").textContent(), "");
+      // Without worklets, as on a page that is not served by https.
+      await one.evaluate(() => Object.defineProperty(BaseAudioContext.prototype, "audioWorklet", { value: undefined }));
+      await one.evaluate(() => window.visemes.clear());
+      await one.locator("#microphone").click();
+      await one.waitForFunction(() => window.visemes.has("\u201caa\u201d"));
+      await one.locator("#microphone").click();
+      assert.deepEqual(one.troubles, []);
+      // What the browser does not give is greyed.
+      const none = await patient(other, {});
+      await none.addInitScript(() => Object.defineProperty(navigator, "mediaDevices", { value: undefined }));
+      const bare = await none.newPage();
+      await bare.goto(args.site);
+      await ready(bare);
+      assert.equal(await bare.locator("#microphone").isDisabled(), true);
+      assert.match(await bare.locator("#face-why").textContent(), /Greyed: .* over https/);
+      assert.equal(await bare.locator("#sentence").isDisabled(), false);
+    } finally {
+      await other.close();
+    }
+    // What is offered to take along is there.
+    for (const name of ["pantin-lvgl.zip", "pantin-arduino.zip"]) {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.locator(`.face a[href="${name}"]`).click()]);
+      assert.equal(readFileSync(await download.path()).subarray(0, 2).toString(), "PK", name);
+    }
+  },
+
+  // The network goes away, and the page stays: from a folder of a server, and a newer build takes the older one's place.
+  async offline(page, browser) {
+    let build = "";
+    let asked = 0;
+    const server = createServer(async ({ url, headers }, response) => {
+      asked++;
+      const path = url.replace("/some/folder/", "");
+      const found = url.startsWith("/some/folder/") ? await fetch(args.site + path, { headers: { ...headers, host: new URL(args.site).host, "accept-encoding": "identity" } }) : { status: 404, headers: new Headers(), arrayBuffer: () => new ArrayBuffer() };
+      let body = Buffer.from(await found.arrayBuffer());
+      if (path === "offline.js" && build) body = Buffer.from(body.toString().replace(/[0-9a-f]{16}/g, build));
+      response.writeHead(found.status, { "content-type": found.headers.get("content-type") ?? "text/plain", "cache-control": "no-store" }).end(body);
+    });
+    const listening = (port) => new Promise((go) => server.listen(port, "127.0.0.1", go));
+    await listening(0);
+    const { port } = server.address();
+    const stop = () => new Promise((go) => (server.close(go), server.closeAllConnections()));
+    const context = await patient(browser, { serviceWorkers: "allow", viewport: { width: 1280, height: 900 } });
+    const one = await context.newPage();
+    const site = `http://127.0.0.1:${port}/some/folder/`;
+    const caches = () => one.evaluate(async () => Promise.all((await window.caches.keys()).map(async (name) => [name, (await (await window.caches.open(name)).keys()).length])));
+    await one.goto(site);
+    await one.evaluate(() => navigator.serviceWorker.ready);
+    await one.waitForFunction(() => navigator.serviceWorker.controller);
+    const [[first, kept], ...others] = await caches();
+    assert.ok(kept > 50 && !others.length, `${kept} files are kept`);
+    assert.ok(first.includes(site));
+    // A file that the page needs only later is kept once it was there.
+    const later = () => one.evaluate(async () => (await fetch("clips/run.bvh")).text().then((text) => text.length, () => 0));
+    const length = await later();
+    assert.ok(length > 1000);
+    await one.waitForFunction((kept) => window.caches.keys().then(([name]) => window.caches.open(name)).then((cache) => cache.keys()).then(({ length }) => length === kept + 1), kept);
+    await stop();
+    asked = 0;
+    for (const address of [site, `${site}index.html`, `${site}?clip=run`]) {
+      await one.goto(address);
+      await one.waitForFunction(() => document.querySelector("#player").playable > 1 && document.querySelector("#character").states.length);
+      assert.ok((await one.evaluate((helpers) => (eval(`(${helpers})()`), window.seen(player).colours), HELPERS.toString())) > 3, "the figure is there");
+    }
+    assert.equal(await one.evaluate(() => player.facts.frames), 26, "the clip that the address names");
+    assert.equal(await later(), length);
+    await one.evaluate(() => document.querySelector("#face").scrollIntoView());
+    await one.waitForFunction(() => document.querySelectorAll("#emotes button").length === 23 && face.readyState === 4);
+    assert.equal(asked, 0);
+    // Another build: its files are kept in place of the older ones.
+    build = "0123456789abcdef";
+    await listening(port);
+    await one.goto(site);
+    await one.waitForFunction((build) => window.caches.keys().then((names) => names.length === 1 && names[0].endsWith(build)), build);
+    await stop();
+    await one.reload();
+    await one.waitForFunction(() => document.querySelector("#player").playable > 1);
   },
 
   // Who wants less motion gets none before asking, and a button to ask with.
@@ -1300,7 +1483,7 @@ const cases = {
   },
 };
 
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--disable-gpu"], chromiumSandbox: process.getuid?.() !== 0 });
+const browser = await chromium.launch(LAUNCH);
 try {
   const page = await opened(browser);
   const result = await cases[name](page, browser);

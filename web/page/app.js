@@ -143,6 +143,15 @@ async function graph() {
 graph().catch(() => {});
 fetch("clips/character.json").then((response) => response.json()).then((known) => ((possible = known), offered()), () => {});
 
+// ---- the face, once it comes near the screen
+
+const faces = new IntersectionObserver((entries) => {
+  if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+  faces.disconnect();
+  import("./faces.js").catch((error) => ($("face-why").textContent = `The emotes cannot be fetched: ${error.message}.`));
+}, { rootMargin: "400px" });
+faces.observe($("face").closest("section"));
+
 // ---- links
 
 // The most bytes of a clip that fits into a link.
@@ -178,6 +187,7 @@ $("share").onclick = async () => {
   else trouble(`The clip is too large for a link: ${bytes(current.data.byteLength)}, at most ${bytes(MOST_SHARED)}.`);
 };
 $("copy").onclick = () => copy($("copy"), $("embed").textContent);
+$("copy-npm").onclick = () => copy($("copy-npm"), $("npm").textContent);
 
 // ---- pictures of what plays
 
@@ -276,6 +286,18 @@ const near = new IntersectionObserver((entries) => {
 // In other colors, all are drawn again.
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => document.querySelectorAll("#clips canvas").forEach((picture) => near.observe(picture)));
 
+// Links to a clip's file, and to what the build has made of it for other programs.
+function downloads({ name, file, others = [] }) {
+  const links = document.createElement("p");
+  for (const ending of ["ptn", ...others]) {
+    const link = document.createElement("a");
+    Object.assign(link, { href: file.replace(/ptn$/, ending), download: "", textContent: `.${ending}` });
+    link.setAttribute("aria-label", `Download ${name}.${ending}`);
+    links.append(link, " ");
+  }
+  return links;
+}
+
 async function gallery() {
   const list = await (await fetch("clips.json")).json();
   for (const clip of list) {
@@ -293,7 +315,7 @@ async function gallery() {
     name.textContent = clip.name;
     size.textContent = bytes(clip.bytes);
     clip.button.append(picture, name, size);
-    item.append(clip.button);
+    item.append(clip.button, downloads(clip));
     $("clips").append(item);
     near.observe(picture);
   }
@@ -505,3 +527,6 @@ const over = (on) => (event) => (event.preventDefault(), $("drop").classList.tog
 addEventListener("dragover", over(true));
 addEventListener("dragleave", over(false));
 addEventListener("drop", (event) => (over(false)(event), take(event.dataTransfer.files)));
+
+// Without a network the page is shown as it was last. Where there is no service worker, as in a file or a private window, it needs the network.
+if (location.protocol.startsWith("http")) navigator.serviceWorker?.register(new URL("offline.js", import.meta.url)).catch(() => {});

@@ -1,25 +1,11 @@
-//! `cargo xtask arduino [FOLDER]`: the Arduino library as a folder to copy: the files of `bindings/arduino`, the decoder in C, and our clips as headers for
-//! the examples.
+//! `cargo xtask arduino [FOLDER]`: the Arduino library as a folder to copy.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
 use clap::Args;
 use harness::paths;
-use pantin_convert::export::source::{c_header, c_header_of_bank, c_header_of_look};
-use pantin_figure::solid::look_text;
-
-/// Our clips, a bank and a character of the solid figure, and the examples that include their headers.
-const CLIPS: [(&str, &[&str]); 4] = [
-    ("walk.ptn", &["OledAdafruit", "OledU8g2", "TftESPI", "Servos", "SolidGC9A01"]),
-    ("face/hello.ptn", &["Face"]),
-    ("character.ptb", &["SteerTFT"]),
-    ("looks/cat.look", &["SolidGC9A01"]),
-];
-
-/// The line of `library.properties` by which a folder is known to be this library.
-const NAME: &str = "name=Pantin";
+pub use harness::web::arduino::{home, write};
 
 /// Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder
 #[derive(Args)]
@@ -46,131 +32,5 @@ impl Arduino {
         println!("PlatformIO:  put the folder into `lib` of a project. ESP-IDF: into `components`.");
         println!("Your motion: cargo pantin expand CLIP.ptn -o clip.h writes the header that a sketch includes.");
         Ok(())
-    }
-}
-
-/// The folder of the files that are the library's own.
-pub fn home() -> PathBuf {
-    paths::root().join("bindings/arduino")
-}
-
-/// Writes the library to a folder, which is new or empty or has this library, whose sources are replaced then. Returns the number of files.
-pub fn write(folder: &Path) -> Result<usize> {
-    make_room(folder)?;
-    let mut count = copy(&home(), folder)?;
-    let sources = paths::root().join("bindings/c/src");
-    count += copy(&sources, &folder.join("src"))?;
-    for (clip, examples) in CLIPS {
-        let path = paths::root().join("motions").join(clip);
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
-        let header = match path.extension().and_then(|extension| extension.to_str()) {
-            Some("ptb") => c_header_of_bank(&pantin::Bank::new_checked(&bytes)?, &bytes, &name)?,
-            Some("look") => {
-                let look = look_text::compile(std::str::from_utf8(&bytes)?).map_err(|error| anyhow::anyhow!("{error}"))?;
-                c_header_of_look(&look, &name)
-            }
-            _ => c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, &name)?,
-        };
-        for example in examples {
-            fs::write(folder.join("examples").join(example).join(format!("{name}.h")), &header)?;
-            count += 1;
-        }
-    }
-    Ok(count)
-}
-
-/// Makes the folder, or takes the sources of an older library away. An error if the folder has anything else.
-fn make_room(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let is_ours = fs::read_to_string(folder.join("library.properties")).is_ok_and(|text| text.lines().any(|line| line == NAME));
-    let is_empty = fs::read_dir(folder)?.next().is_none();
-    ensure!(is_ours || is_empty, "{} has other files: name a new folder, or one with this library", folder.display());
-    let sources = folder.join("src");
-    if sources.exists() {
-        fs::remove_dir_all(&sources).with_context(|| sources.display().to_string())?;
-    }
-    Ok(())
-}
-
-/// Copies a folder, without tests. Returns the number of files.
-fn copy(from: &Path, to: &Path) -> Result<usize> {
-    fs::create_dir_all(to)?;
-    let mut count = 0;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let path = entry?.path();
-        let name = path.file_name().unwrap_or_default();
-        if name == "tests" {
-            continue;
-        }
-        if path.is_dir() {
-            count += copy(&path, &to.join(name))?;
-        } else {
-            fs::copy(&path, to.join(name)).with_context(|| path.display().to_string())?;
-            count += 1;
-        }
-    }
-    Ok(count)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_folder_has_all_sources_headers_and_licences() {
-        let place = tempfile::tempdir().unwrap();
-        let folder = place.path().join("libraries/Pantin");
-        let count = write(&folder).unwrap();
-        let sources = [
-            "pantin.c",
-            "pantin_turn.c",
-            "pantin_figure.c",
-            "pantin_solid.c",
-            "pantin_animator.c",
-            "pantin_feet.c",
-            "pantin_face.c",
-        ];
-        for name in sources.into_iter().chain([
-            "pantin_face_data.h",
-            "pantin_format.h",
-            "pantin_solid.h",
-            "pantin_animator.h",
-            "pantin.h",
-        ]) {
-            let source = paths::root().join("bindings/c/src").join(name);
-            assert_eq!(fs::read(folder.join("src").join(name)).unwrap(), fs::read(source).unwrap());
-        }
-        for name in [
-            "src/PantinPlayer.h",
-            "src/PantinCharacter.h",
-            "src/PantinSolid.h",
-            "library.properties",
-            "LICENSE-MIT",
-            "LICENSE-APACHE",
-            "examples/Servos/Servos.ino",
-        ] {
-            assert!(folder.join(name).is_file(), "{name}");
-        }
-        for name in ["Servos/walk.h", "Face/hello.h", "SteerTFT/character.h", "SolidGC9A01/cat.h"] {
-            assert!(fs::read_to_string(folder.join("examples").join(name)).unwrap().contains("_LEN"), "{name}");
-        }
-        let readme = fs::read_to_string(folder.join("README.md")).unwrap();
-        assert!(!readme.contains("](../"), "the README links to a file that the folder lacks");
-        assert!(!folder.join("tests").exists());
-        // Again: the sources of an older version go.
-        fs::write(folder.join("src/old.c"), "").unwrap();
-        assert_eq!(write(&folder).unwrap(), count);
-        assert!(!folder.join("src/old.c").exists());
-    }
-
-    #[test]
-    fn a_folder_with_other_files_is_refused() {
-        let place = tempfile::tempdir().unwrap();
-        let src = place.path().join("src");
-        fs::create_dir(&src).unwrap();
-        fs::write(src.join("mine.c"), "").unwrap();
-        assert!(write(place.path()).unwrap_err().to_string().contains("has other files"));
-        assert!(src.join("mine.c").exists());
     }
 }

@@ -1,4 +1,5 @@
-//! What our walk takes in other formats, measured when the site is built: the page's first sentence compares them.
+//! Bytes that are measured when the site is built: our walk's in other formats, which the page's first sentence and its table compare, those of the scripts that play it, and those
+//! of the archives.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,24 +7,46 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use xtask::{build, paths, setup};
 
-/// Marks in the page: the walk's bytes, and a sentence about other formats.
+use crate::site::PLAYER;
+use crate::{bundle, downloads};
+
+/// Marks in the page: the walk's bytes, a sentence about other formats, the rows of a table, and the archives' bytes.
 const WALK: &str = "@WALK@";
 const OTHERS: &str = "@OTHERS@";
+const ROWS: &str = "@ROWS@";
+const ARCHIVES: [(&str, &str); 2] = [("@LVGL@", downloads::LVGL), ("@ARDUINO@", downloads::ARDUINO)];
 /// Pixels of the GIF, which is what the player draws.
 const SIZE: &str = "480x240";
 
-/// The page with the sizes of our walk, from the site's clips. Those of text are as servers send them; without Node.js, which compresses it, they are left out.
+/// The page with its sizes, of the site's other files. Those of text are as servers send them; without Node.js, which compresses it, they are left out.
 pub fn filled(site: &Path, page: &str) -> Result<String> {
     let walk = site.join("clips/walk.ptn");
     let bytes = std::fs::read(&walk).context("our walk")?.len();
     let mut others = vec![("a GIF", gif(&walk)?)];
+    let mut scripts = vec![];
     if setup::emulator("node").is_ok() {
         others.insert(0, ("Lottie", lottie(&walk)?));
         others.push(("BVH", sent(&site.join("clips/walk.bvh"))?));
+        scripts.push(("the player of this page", sent(&site.join(PLAYER[0]))?));
+        let folder = tempfile::tempdir().context("a folder for the decoder")?;
+        let decoder = folder.path().join("decoder.js");
+        std::fs::write(&decoder, bundle::decoder()?).context("the decoder")?;
+        scripts.push(("the decoder alone, in JavaScript", sent(&decoder)?));
     }
-    ensure!([WALK, OTHERS].iter().all(|mark| page.contains(mark)), "the page has no place for the walk's sizes");
+    let mut marks = [WALK, OTHERS, ROWS].into_iter().chain(ARCHIVES.map(|(mark, _)| mark));
+    marks.try_for_each(|mark| page.contains(mark).then_some(()).with_context(|| format!("the page has no {mark}")))?;
+    let formats = others.iter().map(|(format, bytes)| (format!("the walk as {format}"), *bytes));
+    let scripts = scripts.iter().map(|(name, bytes)| ((*name).to_owned(), *bytes));
+    let all = std::iter::once(("the walk as a clip".to_owned(), bytes)).chain(formats).chain(scripts);
+    let rows: String =
+        all.map(|(name, bytes)| format!("<tr><th scope=\"row\">{name}</th><td>{}</td></tr>", text(bytes))).collect();
     let others: Vec<String> = others.iter().map(|(format, bytes)| format!("{} as {format}", text(*bytes))).collect();
-    Ok(page.replace(WALK, &text(bytes)).replace(OTHERS, &others.join(", ")))
+    let mut page = page.replace(WALK, &text(bytes)).replace(OTHERS, &others.join(", ")).replace(ROWS, &rows);
+    for (mark, name) in ARCHIVES {
+        let bytes = std::fs::metadata(site.join(name)).with_context(|| name.to_owned())?.len();
+        page = page.replace(mark, &text(bytes as usize));
+    }
+    Ok(page)
 }
 
 /// Bytes as a reader sees them: 652 bytes, 7.5 KB, 120 KB.

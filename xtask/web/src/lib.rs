@@ -1,9 +1,12 @@
 //! The web page: its modules, its files and our clips, and the npm packages.
 
+pub mod arduino;
 pub mod bundle;
 mod compare;
+mod downloads;
 mod inline;
 pub mod npm;
+mod offline;
 mod pack;
 mod script;
 pub mod site;

@@ -13,7 +13,7 @@ use serde_json::json;
 use xtask::build::{self, Build};
 use xtask::{paths, setup};
 
-use crate::{bundle, compare, inline, pack, script, tools};
+use crate::{bundle, compare, downloads, inline, offline, pack, script, tools};
 
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -69,15 +69,23 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         write(&out.join(name), &tools::minified(bundle::bundle(&packages, modules)?.into_bytes())?)?;
     }
     clips(out)?;
+    emotes(out)?;
     character(out)?;
+    downloads::archives(out)?;
+    let scripted = |bytes: &[u8]| tools::minified(script::shortened(bytes)?);
+    let mut worker = String::new();
     for entry in page {
         let name = entry.file_name().unwrap_or_default();
         let mut bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
+        if name == offline::SCRIPT {
+            worker = String::from_utf8(bytes).context(offline::SCRIPT)?;
+            continue;
+        }
         if name == "index.html" {
             bytes = compare::filled(out, &String::from_utf8(bytes).context("index.html")?)?.into_bytes();
         }
-        let scripted = entry.extension().is_some_and(|extension| extension == "js");
-        write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
+        let is_script = entry.extension().is_some_and(|extension| extension == "js");
+        write(&out.join(name), &if is_script { scripted(&bytes)? } else { bytes })?;
     }
     for clip in inlined {
         let bytes = std::fs::read(clip).with_context(|| clip.display().to_string())?;
@@ -86,6 +94,7 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         let page = inline::page(out, &bytes, &name.to_string_lossy()).with_context(|| clip.display().to_string())?;
         write(&out.join(name).with_extension("html"), page.as_bytes())?;
     }
+    write(&out.join(offline::SCRIPT), &scripted(offline::filled(out, &worker)?.as_bytes())?)?;
     tools::compress(&out.join("clips"))?;
     tools::compress(out)
 }
@@ -138,19 +147,38 @@ fn clips(out: &Path) -> Result<()> {
             if clip.extension().is_some_and(|extension| extension == "ptn") {
                 let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
                 let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                write(&out.join("clips").join(&name).with_extension("ptn"), &bytes)?;
-                list.push(json!({ "name": name, "file": format!("clips/{name}.ptn"), "bytes": bytes.len() }));
+                list.push(listed_clip(out, &name, &bytes)?);
             }
         }
     }
     let medley = medley()?;
-    write(&out.join("clips/medley.ptn"), &medley)?;
-    list.push(json!({ "name": "medley", "file": "clips/medley.ptn", "bytes": medley.len() }));
+    list.push(listed_clip(out, "medley", &medley)?);
     let walk = import::load(&paths::root().join("motions/walk.keys"), &ImportOptions::new())?.motion;
     let mut bvh = vec![];
     export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
     write(&out.join("clips/walk.bvh"), &bvh)?;
     write(&out.join("clips.json"), json!(list).to_string().as_bytes())
+}
+
+/// Writes a clip, and as files of other programs; returns its entry in the list.
+fn listed_clip(out: &Path, name: &str, bytes: &[u8]) -> Result<serde_json::Value> {
+    let file = format!("clips/{name}.ptn");
+    write(&out.join(&file), bytes)?;
+    let others = downloads::exported(&out.join(&file), bytes).with_context(|| file.clone())?;
+    Ok(json!({ "name": name, "file": file, "bytes": bytes.len(), "others": others }))
+}
+
+/// The emotes of a face, and their list.
+fn emotes(out: &Path) -> Result<()> {
+    let mut list = vec![];
+    for clip in listed(&paths::root().join("firmware/face/emotes"))? {
+        let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
+        let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let file = format!("clips/emote-{name}.ptn");
+        write(&out.join(&file), &bytes)?;
+        list.push(json!({ "name": name, "file": file, "bytes": bytes.len() }));
+    }
+    write(&out.join("clips/emotes.json"), json!(list).to_string().as_bytes())
 }
 
 /// Our character, with the picture of its state machine, the inputs that do something in each state, and our characters of the solid figure.
@@ -201,7 +229,7 @@ fn medley() -> Result<Vec<u8>> {
     Ok(convert(&whole, &options, &mut |_| ())?.clip)
 }
 
-fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
     let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect();
     files.sort();
