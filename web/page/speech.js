@@ -50,7 +50,7 @@ export function sentence(context) {
   });
   loud.connect(out);
   const noise = context.createBuffer(1, context.sampleRate, context.sampleRate);
-  // The same noise each time.
+  // Equal noise at each call.
   let random = 1;
   noise.getChannelData(0).forEach((_, index, all) => (all[index] = (random = Math.imul(random, 48271) | 1) / 2 ** 31));
   const breath = new AudioBufferSourceNode(context, { buffer: noise, loop: true });

@@ -94,8 +94,7 @@ fn completed(rig: &Rig, mut found: [Option<usize>; 15]) -> [Option<usize>; 15] {
     found[HIPS] = found[HIPS].or(hips.filter(in_spine));
     found[CHEST] = found[CHEST].or(chest);
     if let (None, Some(chest)) = (found[HEAD], found[CHEST]) {
-        found[HEAD] =
-            (0..parts.len()).filter(in_spine).filter(|&joint| above(rig, joint).any(|other| other == chest)).next_back();
+        found[HEAD] = (0..parts.len()).filter(in_spine).rfind(|&joint| above(rig, joint).any(|other| other == chest));
     }
     found
 }
