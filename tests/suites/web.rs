@@ -318,7 +318,7 @@ fn open_vowels() -> Vec<u8> {
             let near = |formant: f64| 1.0 / (1.0 + ((hz - formant) / 120.0).powi(2));
             (near(730.0) + 0.7 * near(1090.0)) * (std::f64::consts::TAU * hz * time).sin()
         });
-        let loud = if at / 8000 % 2 == 0 { 4000.0 } else { 0.0 };
+        let loud = if (at / 8000).is_multiple_of(2) { 4000.0 } else { 0.0 };
         (loud * tones.sum::<f64>()) as i16
     };
     let samples: Vec<u8> = (0..4 * RATE).flat_map(|at| sample(at).to_le_bytes()).collect();
