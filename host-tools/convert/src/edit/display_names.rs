@@ -7,8 +7,7 @@ use crate::note::Remedy;
 use anyhow::{Context, Result, anyhow, ensure};
 
 /// The display's joints with their parents and the names, without their side, of what they stand for in the usual rigs, the best first:
-/// CMU's BVH and ASF, Bandai Namco, Mixamo, Xia, Poser, H-Anim, 3ds Max, Rigify. The chest is found by what hangs on it, and so are Rigify's hips and head, which
-/// are parts of its spine by name.
+/// CMU's BVH and ASF, Bandai Namco, Mixamo, Xia, Poser, H-Anim, 3ds Max. The chest is found by what hangs on it.
 pub const DISPLAY: [(&str, Option<usize>, &[&str]); 15] = [
     ("Hips", None, &["hips", "hip", "pelvis", "sacroiliac", "root", "humanoidroot"]),
     ("Chest", Some(0), &[]),
@@ -32,12 +31,12 @@ const HAND: &[&str] = &["wrist", "hand"];
 const THIGH: &[&str] = &["upleg", "upperleg", "thigh", "femur", "hip"];
 const SHIN: &[&str] = &["leg", "lowerleg", "shin", "calf", "tibia", "knee"];
 const FOOT: &[&str] = &["foot", "ankle"];
-/// Joints of [`DISPLAY`], and the pairs that hang on chest and hips.
-const HIPS: usize = 0;
+/// The chest and the head in [`DISPLAY`], and the joints that hang on the chest.
 const CHEST: usize = 1;
 const HEAD: usize = 2;
 const ARMS: [usize; 2] = [3, 6];
-const THIGHS: [usize; 2] = [9, 12];
+/// Hips, chest and head of Blender's Rigify: bones of a spine that it numbers. Its limbs hang on none of them.
+const RIGIFY: [(usize, &str); 3] = [(0, "spine"), (CHEST, "spine003"), (HEAD, "spine006")];
 
 /// The source joint of each of the display's; `map` is a map file's text, whose lines go before names.
 pub fn sources(rig: &Rig, map: &str) -> Result<[usize; 15]> {
@@ -88,13 +87,13 @@ fn completed(rig: &Rig, mut found: [Option<usize>; 15]) -> [Option<usize>; 15] {
     for (index, (name, _, words)) in DISPLAY.iter().enumerate() {
         found[index] = found[index].or_else(|| guess(&parts, name, words));
     }
-    let carrier = |[left, right]: [usize; 2]| fork(rig, found[left]?, found[right]?);
-    let [hips, chest] = [carrier(THIGHS), carrier(ARMS)];
-    let in_spine = |joint: &usize| parts[*joint].rest.trim_end_matches(|letter: char| letter.is_ascii_digit()) == "spine";
-    found[HIPS] = found[HIPS].or(hips.filter(in_spine));
-    found[CHEST] = found[CHEST].or(chest);
-    if let (None, Some(chest)) = (found[HEAD], found[CHEST]) {
-        found[HEAD] = (0..parts.len()).filter(in_spine).rfind(|&joint| above(rig, joint).any(|other| other == chest));
+    let spine = RIGIFY.map(|(_, rest)| parts.iter().position(|part| part.side.is_none() && part.rest == rest));
+    if found[HEAD].is_none() && spine.iter().all(Option::is_some) {
+        RIGIFY.iter().zip(spine).for_each(|(&(index, _), joint)| found[index] = found[index].or(joint));
+    }
+    if found[CHEST].is_none() {
+        found[CHEST] =
+            ARMS.iter().map(|&arm| found[arm]).collect::<Option<Vec<_>>>().and_then(|arms| fork(rig, arms[0], arms[1]));
     }
     found
 }
@@ -115,12 +114,8 @@ fn guess(parts: &[Part], name: &str, words: &[&str]) -> Option<usize> {
 
 /// The lowest joint above both.
 fn fork(rig: &Rig, a: usize, b: usize) -> Option<usize> {
-    above(rig, a).find(|joint| above(rig, b).any(|other| other == *joint))
-}
-
-/// The joints above one, from its parent on.
-fn above(rig: &Rig, joint: usize) -> impl Iterator<Item = usize> {
-    std::iter::successors(rig.joints[joint].parent, |&joint| rig.joints[joint].parent)
+    let above = |joint: usize| std::iter::successors(rig.joints[joint].parent, |&joint| rig.joints[joint].parent);
+    above(a).find(|joint| above(b).any(|other| other == *joint))
 }
 
 fn mapped(rig: &Rig, map: &str) -> Result<[Option<usize>; 15]> {
@@ -172,13 +167,24 @@ mod tests {
             "root upperback thorax head lhumerus lradius lwrist rhumerus rradius rwrist lfemur ltibia lfoot rfemur rtibia rfoot",
             "Hips Chest Chest2 Head LeftShoulder LeftElbow LeftWrist RightShoulder RightElbow RightWrist LeftHip LeftKnee LeftAnkle RightHip RightKnee RightAnkle",
             "hip abdomen chest head lShldr lForeArm lHand rShldr rForeArm rHand lThigh lShin lFoot rThigh rShin rFoot",
-            "DEF-spine DEF-spine.001 DEF-spine.003 DEF-spine.006 DEF-upper_arm.L DEF-forearm.L DEF-hand.L DEF-upper_arm.R DEF-forearm.R DEF-hand.R DEF-thigh.L DEF-shin.L DEF-foot.L DEF-thigh.R DEF-shin.R DEF-foot.R",
             "HumanoidRoot vl5 vt6 skullbase l_shoulder l_elbow l_wrist r_shoulder r_elbow r_wrist l_hip l_knee l_ankle r_hip r_knee r_ankle",
         ];
         for names in conventions {
             let names: Vec<&str> = names.split(' ').collect();
             assert_eq!(sources(&rig(&names), "").unwrap_or_else(|error| panic!("{error:#}")), expected);
         }
+    }
+
+    #[test]
+    fn the_spine_of_rigify_is_numbered_and_carries_no_limbs() {
+        let names: Vec<&str> = "rig DEF-spine DEF-spine.001 DEF-spine.003 DEF-spine.006 DEF-upper_arm.L DEF-forearm.L DEF-hand.L DEF-upper_arm.R DEF-forearm.R DEF-hand.R DEF-thigh.L DEF-shin.L DEF-foot.L DEF-thigh.R DEF-shin.R DEF-foot.R".split(' ').collect();
+        let parents = [0, 0, 1, 2, 3, 0, 5, 6, 0, 8, 9, 0, 11, 12, 0, 14, 15];
+        let mut rig = rig(&names[..16]);
+        rig.joints.push(Joint { name: names[16].into(), ..rig.joints[15].clone() });
+        rig.joints.iter_mut().zip(parents).skip(1).for_each(|(joint, parent)| joint.parent = Some(parent));
+        assert_eq!(sources(&rig, "").unwrap(), [1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]);
+        // A map's lines go before names.
+        assert_eq!(sources(&rig, "Hips DEF-spine.001").unwrap()[..3], [2, 3, 4]);
     }
 
     #[test]
