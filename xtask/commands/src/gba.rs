@@ -22,7 +22,7 @@ pub struct Gba {
     /// Draw bodies with volume, with 30 pictures per second
     #[arg(long)]
     solid: bool,
-    /// Let the steered character meet another one, which reacts to it, with 30 pictures per second
+    /// Let the steered character meet another one, which reacts to it, with 20 pictures per second
     #[arg(long)]
     meet: bool,
     /// The file
