@@ -180,7 +180,8 @@ impl Bindings {
     pub fn run(self) -> Result<()> {
         let steps = Selected { steps: Steps::default(), only: self.only.as_deref() };
         let folder = tempfile::tempdir()?;
-        steps.run("tools", || {
+        // Whatever is chosen needs some of them.
+        steps.steps.run("tools", || {
             for emulator in ["simavr", "qemu-system-arm", "qemu-system-riscv32"] {
                 setup::install_emulator(emulator)?;
             }
