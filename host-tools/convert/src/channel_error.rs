@@ -5,6 +5,7 @@ use crate::fit::bounds::{Bounds, unit};
 use crate::fit::chain::Constraint;
 use crate::fit::refusal::amount;
 use crate::motion::Motion;
+use crate::note::first_of;
 use anyhow::{Result, ensure};
 use pantin::Clip;
 
@@ -72,12 +73,8 @@ impl Report {
 
     /// `hips.Xposition 6.566 cm at frame 159, chest.Yrotation 3.125 degrees at frame 50 and 12 more`: the worst channels.
     pub fn drift_sentence(&self, motion: &Motion) -> String {
-        let named: Vec<String> = self.drift.iter().take(NAMED).map(|worst| worst.of_channel(motion)).collect();
-        match self.drift.len() {
-            0 => "none".into(),
-            count if count > NAMED => format!("{} and {} more", named.join(", "), count - NAMED),
-            _ => named.join(", "),
-        }
+        let named: Vec<String> = self.drift.iter().map(|worst| worst.of_channel(motion)).collect();
+        if named.is_empty() { "none".into() } else { first_of(&named, NAMED) }
     }
 }
 

@@ -292,6 +292,15 @@ impl fmt::Display for Note {
     }
 }
 
+/// The first `most` of some texts, and how many more there are: `a, b and 3 more`.
+pub(crate) fn first_of(texts: &[String], most: usize) -> String {
+    let shown = texts[..most.min(texts.len())].join(", ");
+    match texts.len().saturating_sub(most) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

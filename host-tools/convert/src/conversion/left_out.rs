@@ -2,7 +2,7 @@
 
 use crate::encode::clip::{Coded, Start};
 use crate::motion::Motion;
-use crate::note::{Note, NoteKind, Remedy};
+use crate::note::{Note, NoteKind, Remedy, first_of};
 use crate::pose_bound::{PoseBound, bounded};
 
 /// Motions that a clip without a bound on rotations leaves out are mentioned from this many degrees on.
@@ -30,10 +30,7 @@ pub fn left_out(motion: &Motion, coded: &Coded, pose: &PoseBound) -> Vec<Note> {
         !pose.sees_rotations() && !helper(kinds[channel].0) && turns(channel) && range(channel) > TOLD_DEGREES
     });
     let note = |names: Vec<String>, what: &str| {
-        let more = names.len().saturating_sub(NAMED_CHANNELS);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let shown = names.iter().take(NAMED_CHANNELS).cloned().collect::<Vec<_>>().join(", ");
-        (!names.is_empty()).then(|| Note::info(NoteKind::Unbounded, format!("{what}: {shown}{more}")))
+        (!names.is_empty()).then(|| Note::info(NoteKind::Unbounded, format!("{what}: {}", first_of(&names, NAMED_CHANNELS))))
     };
     let helpers = note(helpers, "helper bones are not bounded, and stay at rest in the clip");
     let rotations = note(rotations, "places alone are bounded: rotations that hardly move a joint are constant in the clip");

@@ -2,6 +2,7 @@
 
 use super::rig;
 use crate::motion::{Kind, Rig};
+use crate::note::first_of;
 use anyhow::Result;
 
 /// The first difference between two rigs as clips hold them, as a clause about `other`; `None` if clips of both have the
@@ -67,11 +68,10 @@ fn in_scalars(one: &Rig, other: &Rig) -> Option<String> {
     }
     let (count, other_count) = (one.scalars.len(), other.scalars.len());
     let more = if other_count > count { &other.scalars[count..] } else { &one.scalars[other_count..] };
-    let named: Vec<String> = more.iter().take(LISTED).map(|scalar| format!("`{}`", scalar.name)).collect();
-    let rest = if more.len() > LISTED { format!(" and {} more", more.len() - LISTED) } else { String::new() };
+    let named: Vec<String> = more.iter().map(|scalar| format!("`{}`", scalar.name)).collect();
     let which = if other_count > count { "also has" } else { "lacks" };
     let noun = if more.len() == 1 { "channel that moves no joint" } else { "channels that move no joint" };
-    (!more.is_empty()).then(|| format!("it {which} {} {noun}: {}{rest}", more.len(), named.join(", ")))
+    (!more.is_empty()).then(|| format!("it {which} {} {noun}: {}", more.len(), first_of(&named, LISTED)))
 }
 
 /// Channels that are named at most.

@@ -3,7 +3,7 @@
 use crate::expand::expand_within;
 use crate::memory::Memory;
 use crate::motion::{Motion, Rig};
-use crate::note::{Note, NoteKind, Remedy};
+use crate::note::{Note, NoteKind, Remedy, first_of};
 use anyhow::Result;
 use pantin::Bank;
 
@@ -36,10 +36,8 @@ pub fn travel(bank: &Bank<'_>, memory: Memory) -> Result<Option<Note>> {
         return Ok(None);
     }
     let of = |(joint, clips): &(String, Vec<String>)| {
-        let more = clips.len().saturating_sub(LISTED);
-        let listed: Vec<String> = clips.iter().take(LISTED).map(|clip| format!("`{clip}`")).collect();
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("{}{more} by `{joint}`", listed.join(", "))
+        let clips: Vec<String> = clips.iter().map(|clip| format!("`{clip}`")).collect();
+        format!("{} by `{joint}`", first_of(&clips, LISTED))
     };
     let text = format!(
         "the clips travel by different joints, so that the figure jumps at changes between them: {}",
