@@ -14,6 +14,8 @@
 #define NO_POINT 255u
 /* The time in which a foot that is let go comes back to its clip. */
 #define RELEASE_US ((uint32_t)200000)
+/* The longest step. */
+#define LONGEST_US ((uint32_t)4000000)
 /* The least bend of a knee, 1 degree, and the greatest, 150 degrees, in 2^-32 turns. */
 #define LEAST_BEND 11930465L
 #define GREATEST_BEND 1789569707L
@@ -62,7 +64,7 @@ static void wide_subtract(int64_t *to, const int64_t *a, const int64_t *b) {
 /* ---- Distances that die out ---- */
 
 /* The part of a release that has passed, in 2^-15. */
-static int32_t part_of(uint32_t since_us) { return (int32_t)(((uint64_t)since_us << 15) / RELEASE_US); }
+static int32_t part_of(uint32_t since_us, uint32_t whole_us) { return (int32_t)(((uint64_t)since_us << 15) / whole_us); }
 
 /* The distance at a part of the way: the cubic that begins with the distance and the velocity, and ends at zero with neither. */
 static int32_t ease_at(const pantin_ease *own, int32_t t) {
@@ -401,26 +403,65 @@ static void to_pose(const standing *s, const int32_t *way, int32_t *to) {
 /* The length of a stretched leg, in the unit of position channels. */
 static int32_t length_of(const pantin_foot *f, int16_t shift) { return shifted(f->upper[0] + f->lower[0], -shift); }
 
-static void release(pantin_foot_state *s) {
+/* Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by a 16th of the leg at most. */
+static void release(pantin_foot *f, int16_t shift, int64_t far) {
+    pantin_foot_state *s = &f->state;
+    int32_t lift = (int32_t)(least(far, length_of(f, shift) / 4) / 4);
+    s->lift = f->upside_down ? -lift : lift;
     s->doing = RELEASED;
     s->steps = 0;
-    s->lift = 0;
+    s->step_us = RELEASE_US;
     s->since_us[0] = 0;
     if (s->level) s->since_us[1] = 0;
     s->level = 0;
 }
 
 static int32_t left_height(const pantin_foot_state *s) {
-    int32_t t = part_of(s->since_us[0]), up = s->doing == RELEASED ? (t * (ONE - t)) >> 15 : 0;
+    int32_t t = part_of(s->since_us[0], s->step_us), up = s->doing == RELEASED ? (t * (ONE - t)) >> 15 : 0;
     /* 4 t (1 - t), in 2^-13 of a lift. */
-    return sum(ease_at(&s->rise, part_of(s->since_us[1])), (int32_t)(uint32_t)(uint64_t)(((int64_t)s->lift * up) >> 13));
+    return sum(ease_at(&s->rise, part_of(s->since_us[1], RELEASE_US)), (int32_t)(uint32_t)(uint64_t)(((int64_t)s->lift * up) >> 13));
 }
 
 /* How far a foot is from where the clip has it, in the world. */
 static void left_of(const pantin_foot_state *s, int32_t *left) {
     uint8_t i;
-    for (i = 0; i < 2; i++) left[i] = ease_at(&s->flat[i], part_of(s->since_us[0]));
+    for (i = 0; i < 2; i++) left[i] = ease_at(&s->flat[i], part_of(s->since_us[0], s->step_us));
     left[2] = left_height(s);
+}
+
+/* What is left of its way has no velocity from now on; its lift is a part of the height that is left. */
+static void come_to_rest(pantin_foot_state *s) {
+    int32_t left[3];
+    uint8_t i;
+    left_of(s, left);
+    for (i = 0; i < 2; i++) {
+        s->flat[i].d = left[i];
+        s->flat[i].v = 0;
+    }
+    if (s->lift == 0) return;
+    s->rise.d = left[2];
+    s->rise.v = 0;
+    s->since_us[1] = 0;
+}
+
+/* Enters a clip in which its place is far away along one axis, and steps there while a transition runs. If it is on the ground there, it is held when it
+ * has come to rest. */
+static void step(pantin_foot *f, int16_t shift, uint8_t contact, int64_t far, uint32_t left_us) {
+    pantin_foot_state *s = &f->state;
+    uint32_t least_us = RELEASE_US;
+    uint8_t i;
+    s->before = contact;
+    if (s->doing != LOCKED) {
+        /* What is near goes with its clips. */
+        if (far <= length_of(f, shift) / 24 || left_us == 0) return;
+        come_to_rest(s);
+        /* A foot that was in the air has nothing to come back from. */
+        if (s->flat[0].d == 0 && s->flat[1].d == 0) least_us = 1;
+    }
+    release(f, shift, far);
+    s->steps = 1;
+    s->step_us = left_us < least_us ? least_us : left_us < LONGEST_US ? left_us : LONGEST_US;
+    for (i = 0; i < 2; i++) s->flat[i].v = narrow((int64_t)s->flat[i].v * (int64_t)s->step_us / (int64_t)RELEASE_US);
 }
 
 /* A point of a foot in the world, with what is left of its way. */
@@ -438,7 +479,7 @@ static int lands(const pantin_foot *f, int16_t shift, uint8_t point, const int64
     int64_t slow = (int64_t)length_of(f, shift) * elapsed_us / 2000000;
     uint8_t i, rests = 1;
     if (s->before == NO_POINT) return 1;
-    if (s->doing == RELEASED && s->steps) return calm && s->since_us[0] >= RELEASE_US;
+    if (s->doing == RELEASED && s->steps) return calm && s->since_us[0] >= s->step_us;
     for (i = 0; i < 3; i++) rests = (uint8_t)(rests && wide_size(wide_difference(at[i], s->at[i])) <= slow);
     return calm || (s->before == point && rests);
 }
@@ -456,7 +497,7 @@ static void keep(pantin_foot *f, int16_t shift, const int64_t *way, int calm, ui
         s->level = (uint8_t)!calm;
     }
     if (wide_size(way[0]) > far || wide_size(way[1]) > far) {
-        release(s);
+        release(f, shift, far);
         s->steps = 1;
     }
 }
@@ -500,9 +541,9 @@ static void want(const posed_foot *p, wanted_leg *leg) {
 static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t elapsed_us, wanted_leg *leg) {
     pantin_foot_state *s = &p->foot->state;
     int64_t at[3], other[3];
-    int32_t left[3];
     uint8_t i;
-    for (i = 0; i < 2; i++) s->since_us[i] = elapsed_us >= RELEASE_US - s->since_us[i] ? RELEASE_US : s->since_us[i] + elapsed_us;
+    const uint32_t whole[2] = {s->step_us, RELEASE_US};
+    for (i = 0; i < 2; i++) s->since_us[i] = elapsed_us >= whole[i] - s->since_us[i] ? whole[i] : s->since_us[i] + elapsed_us;
     leg->is_wanted = 0;
     if (contact == NO_POINT && s->doing == FREE) {
         s->before = NO_POINT;
@@ -510,7 +551,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
     }
     places_of(p->foot, p->pose, p->shift, leg->at);
     if (s->doing == LOCKED && contact == NO_POINT) {
-        release(s);
+        release(p->foot, p->shift, most(wide_size(s->flat[0].d), wide_size(s->flat[1].d)));
     } else if (s->doing == LOCKED && s->point != contact) {
         world_of(p, leg, contact, at);
         world_of(p, leg, s->point, other);
@@ -521,11 +562,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         world_of(p, leg, contact, at);
         point_with_left(s, at, at);
         if (lands(p->foot, p->shift, contact, at, calm, elapsed_us)) {
-            left_of(s, left);
-            for (i = 0; i < 2; i++) {
-                s->flat[i].d = left[i];
-                s->flat[i].v = 0;
-            }
+            come_to_rest(s);
             s->doing = LOCKED;
             s->point = contact;
             memcpy(s->anchor, at, sizeof at);
@@ -536,7 +573,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         world_of(p, leg, s->point, at);
         wide_subtract(at, s->anchor, at);
         keep(p->foot, p->shift, at, calm, elapsed_us);
-    } else if (s->since_us[0] == RELEASE_US && s->since_us[1] == RELEASE_US) {
+    } else if (s->since_us[0] == whole[0] && s->since_us[1] == RELEASE_US) {
         s->doing = FREE;
         s->lift = 0;
     }
@@ -652,27 +689,32 @@ static void choose_glide(int64_t (*ways)[3], const uint8_t *has, int64_t length,
     if (farther(to) > length / 2) to[0] = to[1] = 0;
 }
 
-/* Where a foot would be held at a point that is on the ground in the clip that was just entered. Returns 0 if it is not held. */
-static int held_at(const posed_foot *p, uint8_t point, int64_t *to) {
+/* Where a point of a foot is now, in the world: the height of a held foot is not its anchor's. */
+static void place_of(const posed_foot *p, uint8_t point, int64_t *to) {
     const pantin_foot_state *s = &p->foot->state;
     wanted_leg leg;
-    int64_t from[3], at[3];
-    if (s->doing != LOCKED) return 0;
+    int64_t from[3], height;
     places_of(p->foot, p->pose, p->shift, leg.at);
+    world_of(p, &leg, point, to);
+    if (s->doing != LOCKED) {
+        point_with_left(s, to, to);
+        return;
+    }
+    height = wide_sum(to[2], left_height(s));
     world_of(p, &leg, s->point, from);
-    world_of(p, &leg, point, at);
-    wide_subtract(from, at, from);
+    wide_subtract(from, to, from);
     wide_add(to, s->anchor, from);
-    to[2] = wide_sum(at[2], left_height(s));
-    return 1;
+    to[2] = height;
 }
 
-/* Places the clip that was entered by the feet that are held and are on the ground in it, too. */
+/* Places the clip that was entered by the feet that are held and are on the ground in it, too. Others that are on the ground before or after step to
+ * their places. */
 static void enter(pantin_character *c, const standing *now, const uint8_t *contacts) {
     pantin_feet *f = c->feet;
     pantin_animator *a = &c->animator;
     int64_t ways[PANTIN_FEET][3], anchors[PANTIN_FEET][3], by[2], length = length_of(&f->feet[0], f->shift), rest[2];
-    uint8_t has[PANTIN_FEET] = {0, 0}, i, j;
+    uint64_t left_us;
+    uint8_t stays[PANTIN_FEET] = {0, 0}, points[PANTIN_FEET], i, j;
     pantin_placement end_place;
     standing end;
     /* Its own pose is asked for below. */
@@ -682,36 +724,34 @@ static void enter(pantin_character *c, const standing *now, const uint8_t *conta
     memset(ways, 0, sizeof ways);
     for (i = 0; i < f->count; i++) {
         posed_foot p = {&f->feet[i], a->pose, now, f->shift};
+        int locked = f->feet[i].state.doing == LOCKED;
         wanted_leg leg;
-        has[i] = (uint8_t)(contacts[i] != NO_POINT && held_at(&p, contacts[i], anchors[i]));
-        if (!has[i]) continue;
+        points[i] = contacts[i] != NO_POINT ? contacts[i] : locked ? f->feet[i].state.point : (uint8_t)NO_POINT;
+        stays[i] = (uint8_t)(contacts[i] != NO_POINT && locked);
+        if (points[i] == NO_POINT) continue;
+        place_of(&p, points[i], anchors[i]);
         p.pose = a->track.player.pose;
         p.stand = &end;
         places_of(p.foot, p.pose, p.shift, leg.at);
-        world_of(&p, &leg, contacts[i], ways[i]);
+        world_of(&p, &leg, points[i], ways[i]);
         wide_subtract(ways[i], anchors[i], ways[i]);
     }
-    choose_glide(ways, has, length, by);
+    choose_glide(ways, stays, length, by);
     if (a->left < 2) by[0] = by[1] = 0;
+    left_us = (uint64_t)a->left * a->track.clip.frame_time_ns / 1000;
     glide(a, by);
     for (i = 0; i < f->count; i++) {
         pantin_foot_state *s = &f->feet[i].state;
-        int64_t lift = 0;
+        if (points[i] == NO_POINT) continue;
         for (j = 0; j < 2; j++) rest[j] = wide_difference(ways[i][j], by[j]);
-        s->before = contacts[i];
-        if (has[i] && farther(rest) <= length / 12) {
-            s->doing = LOCKED;
-            s->point = contacts[i];
-            memcpy(s->anchor, anchors[i], sizeof s->anchor);
-            s->level = 1;
+        if (!stays[i] || farther(rest) > length / 12) {
+            step(&f->feet[i], f->shift, contacts[i], farther(rest), left_us < LONGEST_US ? (uint32_t)left_us : LONGEST_US);
             continue;
         }
-        if (has[i]) lift = least(farther(rest), length / 4) / 4;
-        /* It is held when it has come to rest; one that was held steps to its place, and is lifted on its way. */
-        if (s->doing != LOCKED) continue;
-        release(s);
-        s->steps = 1;
-        s->lift = (int32_t)(a->track.clip.rig.up & 4 ? -lift : lift);
+        s->doing = LOCKED;
+        s->point = s->before = contacts[i];
+        memcpy(s->anchor, anchors[i], sizeof s->anchor);
+        s->level = 1;
     }
 }
 
@@ -868,6 +908,7 @@ static pantin_result find_leg(pantin_foot *f, const pantin_animator *a, int32_t 
     }
     if (f->bone_count < 3) return PANTIN_ERROR_MACHINE;
     if (!measure_bone(&f->bones[f->bone_count - 2], f->upper) || !measure_bone(&f->bones[f->bone_count - 1], f->lower)) return PANTIN_ERROR_MACHINE;
+    f->upside_down = (rig->up & 4) != 0;
     f->nearest = distance_at(f, GREATEST_BEND);
     f->farthest = distance_at(f, LEAST_BEND);
     for (i = 0; i < f->point_count; i++) {
@@ -902,6 +943,7 @@ static pantin_result find_legs(pantin_feet *f, const pantin_animator *a) {
             s->at[j] = wide_shifted(s->at[j], shift);
             s->anchor[j] = wide_shifted(s->anchor[j], shift);
         }
+        s->lift = shifted(s->lift, -shift);
         for (j = 0; j < 2; j++) ease_in_unit(&s->flat[j], shift);
         ease_in_unit(&s->rise, shift);
     }
@@ -1028,6 +1070,7 @@ pantin_result pantin_character_feet(pantin_character *c, pantin_feet *feet) {
     for (i = 0; i < PANTIN_FEET; i++) {
         feet->feet[i].state.before = NO_POINT;
         for (j = 0; j < 2; j++) feet->feet[i].state.since_us[j] = RELEASE_US;
+        feet->feet[i].state.step_us = RELEASE_US;
     }
     result = pantin_find_section(&c->bank, PANTIN_FEET_SECTION, &feet->table, &end);
     if (result == PANTIN_OK && !check_table(c, feet, end)) result = PANTIN_ERROR_MACHINE;

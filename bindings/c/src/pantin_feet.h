@@ -45,6 +45,7 @@ typedef struct pantin_foot_state {
     int64_t anchor[3]; /* where the held point stays */
     pantin_ease flat[2], rise;
     uint32_t since_us[2]; /* since the foot was let go, and since its height was */
+    uint32_t step_us;     /* the time in which it comes to its clip's place */
     int32_t lift;         /* how high it is lifted on its way back */
     int32_t hinge[3];     /* the axis about which the knee bends, in its own axes */
     uint8_t doing, point; /* whether it is held, and at which point: 0 is the ankle */
@@ -58,6 +59,7 @@ typedef struct pantin_foot_state {
 typedef struct pantin_foot {
     uint16_t ankle, joints[PANTIN_FOOT_POINTS]; /* indices in the rig: the ankle, and its points */
     uint8_t point_count, bone_count;
+    uint8_t upside_down; /* 1: the ground is above, in raw units */
     uint8_t parents[PANTIN_FOOT_POINTS]; /* the point on which a point hangs */
     pantin_leg_bone bones[PANTIN_LEG_JOINTS], points[PANTIN_FOOT_POINTS];
     int32_t upper[2], lower[2]; /* lengths of thigh and shin in figure units, and 2^29 over each */

@@ -23,6 +23,12 @@ impl Ease {
         Ease { d: crate::chain::shifted(self.d, -shift), v: crate::chain::shifted(self.v, -shift) }
     }
 
+    /// Converts the velocity to another time.
+    pub(crate) fn in_time(self, from_us: u32, to_us: u32) -> Ease {
+        let v = (i64::from(self.v) * i64::from(to_us)).checked_div(from_us.into()).unwrap_or(0);
+        Ease { v: v.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32, ..self }
+    }
+
     /// The distance at a part of the way, in 2^-15: the cubic that begins with this distance and velocity and ends at zero with neither.
     pub(crate) fn at(self, part: u32) -> i32 {
         let t = i64::from(part.min(ONE));

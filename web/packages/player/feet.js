@@ -11,8 +11,9 @@ const MAP = 2;
 // Where the inner parts of a figure have its rotations, and what places its joints.
 const TURNS = 5;
 const PLACE = 7;
-// Microseconds in which a foot that is let go comes back to its clip.
+// Microseconds in which a foot that is let go comes back to its clip, and those of the longest step.
 const RELEASE = 200000;
+const LONGEST = 4000000;
 const ORIGIN = [0, 0, 0];
 // Rotations are nine numbers, as in figure.js.
 const UNTURNED = [ONE, 0, 0, 0, ONE, 0, 0, 0, ONE];
@@ -57,7 +58,7 @@ const angleOf = (y, x) => {
 };
 
 // A part of the time in which a foot comes back, in 2^-15.
-const partOfRelease = (since) => floor((since * ONE) / RELEASE);
+const partOf = (since, whole) => floor((since * ONE) / whole);
 
 /**
  * The feet of the fields of a table whose checksum is right, for an animator of a bank with a number of clips. `maths` and `figureOf` are those of figure.js; the other tools are those of
@@ -178,43 +179,52 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     let before = -1;
     let anchor = [0n, 0n, 0n];
     let last = anchor;
-    // Whether the height stays, too; whether it is not held before it has come back to its clip; and how high it is lifted on its way.
+    // Whether the height stays, too; whether it is not held before it has come back to its clip; how high it is lifted on its way, and how long that takes.
     let isLevel, steps;
     let lift = 0;
+    let whole = RELEASE;
     // For two horizontal axes and the height, a distance from the clip that dies out, the one that it would go in the whole time at its velocity, and the time since it was let go.
     let eases = [[0, 0, RELEASE], [0, 0, RELEASE], [0, 0, RELEASE]];
 
     const length = () => shifted(upper + lower, -shift);
     const legIn = (known = []) => leg.map((index) => jointAt(index, pose, known));
     const pointIn = (pose, point, known) => jointAt(joints[point], pose, known)[0].map((x) => shifted(x, -shift));
-    const release = (again, rise) => {
+    const wholeOf = (axis) => (axis < 2 ? whole : RELEASE);
+    // Lets go of the foot that is this far from where it goes, along one axis.
+    const release = (again, far) => {
       point = -1;
       steps = again;
-      lift = rise;
+      lift = upward * (min(far, length() >> 2) >> 2);
+      whole = RELEASE;
       eases = eases.map(([d, v, since], axis) => [d, v, axis < 2 || isLevel ? 0 : since]);
       isLevel = false;
     };
     const left = () => {
-      const [a, b, height] = eases.map(([d, v, since]) => {
-        const part = partOfRelease(since);
+      const [a, b, height] = eases.map(([d, v, since], axis) => {
+        const part = partOf(since, wholeOf(axis));
         const rest = ONE - part;
         const square = (rest * rest) >> 15;
         return narrow(weighted(d, (square * (ONE + 2 * part)) >> 15) + weighted(v, (square * part) >> 15));
       });
       // 4 t (1 - t), in 2^-13 of a lift: nothing of a foot that is held, or where the clip has it.
-      const part = partOfRelease(eases[0][2]);
+      const part = partOf(eases[0][2], whole);
       return [a, b, (height + floor((lift * ((part * (ONE - part)) >> 15)) / 8192)) | 0];
+    };
+    // What is left of its way has no velocity from now on; its lift is a part of the height that is left.
+    const settle = () => {
+      const rest = left();
+      eases = eases.map((ease, axis) => (axis < 2 || lift ? [rest[axis], 0, 0] : ease));
     };
     // Where it would be held at another point.
     const anchorAt = (world, contact) => added(anchor, apart(world(contact), world(point)));
     // Lets time pass; returns the leg and where its ankle is to be, if that is not where the clip has it.
     const update = ([toWorld, toPose], contact, isCalm, elapsed) => {
-      eases = eases.map(([d, v, since]) => [d, v, min(since + elapsed, RELEASE)]);
+      eases = eases.map(([d, v, since], axis) => [d, v, min(since + elapsed, wholeOf(axis))]);
       const known = [];
       const world = (point) => toWorld(pointIn(pose, point, known));
       const withLeft = () => added(world(contact), left().map(big));
       if (contact < 0) {
-        if (point >= 0) release(false, 0);
+        if (point >= 0) release(false, max(abs(eases[0][0]), abs(eases[1][0])));
       } else if (point >= 0) {
         anchor = anchorAt(world, contact);
         point = contact;
@@ -222,8 +232,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         const place = withLeft();
         // Half of the leg in a second.
         const rests = before === contact && apart(place, last).every((x) => size(x) <= (big(length()) * big(elapsed)) / 2000000n);
-        if (before < 0 || (steps ? isCalm && eases[0][2] === RELEASE : isCalm || rests)) {
-          eases = eases.map((ease, axis) => (axis < 2 ? [left()[axis], 0, 0] : ease));
+        if (before < 0 || (steps ? isCalm && eases[0][2] === whole : isCalm || rests)) {
+          settle();
           point = contact;
           anchor = place;
           isLevel = false;
@@ -236,31 +246,49 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
           return axis < 2 || isLevel ? [d, elapsed ? narrow(trunc((((d - ease[0]) | 0) * RELEASE) / elapsed)) : 0, 0] : ease;
         });
         isLevel &&= !isCalm;
-        if (farther(way) > length() >> 2) release(true, 0);
-      } else if (eases.every(([, , since]) => since === RELEASE)) steps = false;
+        if (farther(way) > length() >> 2) release(true, length());
+      } else if (eases.every(([, , since], axis) => since === wholeOf(axis))) {
+        steps = false;
+        lift = 0;
+      }
       before = contact;
       if (contact >= 0) last = withLeft();
       const way = toPose(left()).map((x) => shifted(x, shift));
       if (anyBit(way)) return [legIn(known), way];
     };
-    // How far the place where it would be held in the clip that was entered is from where the clip will have it, and that place: neither if it is not held.
+    // How far the foot is from where the clip that was entered will have it, its place, and whether it stays on the ground; nothing if it was and is in the air.
     const wayOf = ([toWorld], [toEnd], contact) => {
-      if (point < 0 || contact < 0) return [];
+      const own = contact < 0 ? point : contact;
+      if (own < 0) return [];
       const world = (point) => toWorld(pointIn(pose, point, []));
-      const place = anchorAt(world, contact);
-      place[2] = wide(world(contact)[2] + big(left()[2]));
-      return [apart(place, toEnd(pointIn(track.player.raw, contact, []))), place];
+      const [, , rest] = left();
+      const place = point < 0 ? added(world(own), left().map(big)) : anchorAt(world, own);
+      if (point >= 0) place[2] = wide(world(own)[2] + big(rest));
+      return [apart(place, toEnd(pointIn(track.player.raw, own, []))), place, point >= 0 && contact >= 0];
     };
-    const enter = (contact, place, rise) => {
+    // Enters a clip in which it stays at a place, or steps to one that is far away while a transition runs.
+    const enter = (contact, place, far, time) => {
       before = contact;
       if (place) {
         point = contact;
         anchor = place;
         isLevel = true;
-      } else if (point >= 0) release(true, rise);
+        return;
+      }
+      if (point < 0) {
+        // What is near goes with its clips.
+        if (far <= floor(length() / 24) || !time) return;
+        settle();
+      }
+      // A foot that was in the air has nothing to come back from.
+      const least = point < 0 && !anyBit([eases[0][0], eases[1][0]]) ? 1 : RELEASE;
+      release(true, far);
+      whole = clamp(time, least, LONGEST);
+      eases = eases.map(([d, v, since], axis) => [d, axis < 2 ? narrow(trunc((v * whole) / RELEASE)) : v, since]);
     };
     const convert = (by) => {
       hinge = 0;
+      lift = shifted(lift, -by);
       last = last.map((x) => wideShifted(x, by));
       anchor = anchor.map((x) => wideShifted(x, by));
       eases = eases.map(([d, v, since]) => [shifted(d, -by), shifted(v, -by), since]);
@@ -340,17 +368,19 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const ways = feet.map((foot, index) => foot[2](frame, end, found[index]));
     const length = feet[0][1]();
     // Of two ways the mean, or the shorter one if they are far apart.
-    let [[glide] = [[0n, 0n, 0n]], [other] = []] = ways.filter(([way]) => way);
+    let [[glide] = [[0n, 0n, 0n]], [other] = []] = ways.filter(([, , stays]) => stays);
     if (other) {
       if (farther(apart(glide, other)) <= length >> 3) glide = glide.map((x, axis) => (x + other[axis]) / 2n);
       else if (farther(glide) > farther(other)) glide = other;
     }
     if (farther(glide) > length >> 1 || animator.left < 2) glide = [0n, 0n, 0n];
     if (farther(glide)) animator.glide(glide);
+    const time = floor((animator.left * track.clip.frameTimeNs) / 1000);
     feet.forEach(([, , , enter], index) => {
-      const [way = glide, place] = ways[index];
-      const rest = farther(apart(way, glide));
-      enter(found[index], rest <= floor(length / 12) && place, upward * (min(Number(rest), length >> 2) >> 2));
+      const [way, place, stays] = ways[index];
+      if (!way) return;
+      const far = Number(farther(apart(way, glide)));
+      enter(found[index], stays && far <= floor(length / 12) && place, far, time);
     });
   };
   find();

@@ -11,8 +11,11 @@ use heapless::Vec;
 use pantin::{Angle, Clip};
 use pantin_math::rotation::Vector;
 
-/// The time in which a foot that is let go comes back to its clip.
+/// The time in which a foot that is let go comes back to its clip, at least: one that steps to its place in the clip that was entered takes as long as
+/// the transition.
 const RELEASE_US: u32 = 200_000;
+/// The longest step.
+const LONGEST_US: u32 = 4_000_000;
 
 /// Where a foot is in its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,14 +41,17 @@ pub(super) struct Foot<'a> {
     /// Where the locked point stays. The height stays while `level`.
     anchor: [i64; 3],
     level: bool,
-    /// Let go because the clip has it elsewhere: it is not held again before it has come there.
+    /// Let go because the clip has it elsewhere: it is not held again before it has come there, in a time of its own.
     steps: bool,
+    step_us: u32,
     flat: [Ease; 2],
     rise: Ease,
     /// Time since the foot was let go, and since its height was.
     since_us: [u32; 2],
     /// How high it is lifted on its way back.
     lift: i32,
+    /// Whether the ground is above, in raw units.
+    upside_down: bool,
 }
 
 /// The places of a limb, and where its end is to be: in figure units.
@@ -81,10 +87,12 @@ impl<'a> Foot<'a> {
             anchor: [0; 3],
             level: false,
             steps: false,
+            step_us: RELEASE_US,
             flat: [Ease::default(); 2],
             rise: Ease::default(),
             since_us: [RELEASE_US; 2],
             lift: 0,
+            upside_down: rig.up().is_negative(),
         })
     }
 
@@ -93,8 +101,8 @@ impl<'a> Foot<'a> {
         let Foot { limb, points, .. } = Foot::new(row, clip, groups)?;
         let wide = |x: i64| if shift >= 0 { x.wrapping_shl(shift.min(63) as u32) } else { x >> shift.unsigned_abs().min(63) };
         let ease = |own: Ease| own.in_unit(shift);
-        let (flat, rise) = (self.flat.map(ease), ease(self.rise));
-        Ok(Foot { limb, points, at: self.at.map(wide), anchor: self.anchor.map(wide), flat, rise, ..self.clone() })
+        let (flat, rise, lift) = (self.flat.map(ease), ease(self.rise), shifted(self.lift, -shift));
+        Ok(Foot { limb, points, at: self.at.map(wide), anchor: self.anchor.map(wide), flat, rise, lift, ..self.clone() })
     }
 
     fn joint(&self, pose: &[i32], ankle: &Joint, point: u8) -> Joint {
@@ -115,13 +123,18 @@ impl<'a> Foot<'a> {
         if let State::Locked(point) = self.state { Some(point) } else { None }
     }
 
-    /// Where the foot would be held at a point that is on the ground in the clip that was just entered, if it is held.
-    pub(super) fn held_at(&self, pose: &[i32], frame: &Frame, point: u8) -> Option<[i64; 3]> {
-        let State::Locked(own) = self.state else { return None };
+    /// Where a point of the foot is now, in the world: the height of a held foot is not its anchor's.
+    pub(super) fn place(&self, pose: &[i32], frame: &Frame, point: u8) -> [i64; 3] {
         let places = self.limb.places(pose);
-        let [from, to] = [own, point].map(|point| frame.to_world(self.point(pose, &places, point)));
-        let ([a, b, _], [.., height]) = (sum(self.anchor, difference(to, from)), to);
-        Some([a, b, height + i64::from(self.left_height())])
+        let own = |point: u8| frame.to_world(self.point(pose, &places, point));
+        let at = own(point);
+        match self.state {
+            State::Locked(held) => {
+                let ([a, b, _], [.., height]) = (sum(self.anchor, difference(at, own(held))), at);
+                [a, b, height.wrapping_add(self.left_height().into())]
+            }
+            _ => sum(at, self.left().map(i64::from)),
+        }
     }
 
     /// Goes on being held in another clip, at a point and a place, until the transition has ended at this height.
@@ -129,18 +142,40 @@ impl<'a> Foot<'a> {
         (self.state, self.anchor, self.level, self.before) = (State::Locked(point), anchor, true, Some(point));
     }
 
-    /// Enters a clip at an instant at which the foot is already on the ground: it is held when it has come to rest. One that was held steps to its
-    /// place, and is lifted by `lift` on its way.
-    pub(super) fn land_later(&mut self, contact: Option<u8>, lift: i32) {
+    /// Enters a clip in which its place is `far` away along one axis, and steps there while a transition of `left_us` runs. If it is on the ground
+    /// there, it is held when it has come to rest.
+    pub(super) fn step(&mut self, contact: Option<u8>, far: i64, left_us: u32) {
         self.before = contact;
-        if matches!(self.state, State::Locked(_)) {
-            self.release();
-            (self.steps, self.lift) = (true, lift);
+        if self.held().is_none() {
+            // What is near goes with its clips.
+            if far <= i64::from(self.limb.length() / 24) || left_us == 0 {
+                return;
+            }
+            self.rest();
+        }
+        // A foot that was in the air has nothing to come back from.
+        let least = if self.held().is_none() && self.flat == [Ease::default(); 2] { 1 } else { RELEASE_US };
+        self.release(far);
+        self.steps = true;
+        self.step_us = left_us.clamp(least, LONGEST_US);
+        self.flat = self.flat.map(|own| own.in_time(RELEASE_US, self.step_us));
+    }
+
+    /// What is left of its way has no velocity from now on; its lift is a part of the height that is left.
+    fn rest(&mut self) {
+        let [a, b, height] = self.left().map(Ease::at_rest);
+        self.flat = [a, b];
+        if self.lift != 0 {
+            let [_, since] = &mut self.since_us;
+            (self.rise, *since) = (height, 0);
         }
     }
 
-    fn release(&mut self) {
-        (self.state, self.steps, self.lift) = (State::Released, false, 0);
+    /// Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by a 16th of the leg at most.
+    fn release(&mut self, far: i64) {
+        let lift = (far.min(i64::from(self.limb.length() / 4)) / 4) as i32;
+        self.lift = if self.upside_down { -lift } else { lift };
+        (self.state, self.steps, self.step_us) = (State::Released, false, RELEASE_US);
         let [flat, height] = &mut self.since_us;
         *flat = 0;
         if self.level {
@@ -150,7 +185,7 @@ impl<'a> Foot<'a> {
 
     fn left_height(&self) -> i32 {
         let [flat, height] = self.since_us;
-        let t = part(flat, RELEASE_US);
+        let t = part(flat, self.step_us);
         // 4 t (1 - t), in 2^-13 of a lift.
         let up = if self.state == State::Released { (t * ((1 << 15) - t.min(1 << 15))) >> 15 } else { 0 };
         self.rise.at(part(height, RELEASE_US)).wrapping_add(((i64::from(self.lift) * i64::from(up)) >> 13) as i32)
@@ -159,7 +194,7 @@ impl<'a> Foot<'a> {
     /// How far the foot is from where the clip has it, in the world.
     fn left(&self) -> [i32; 3] {
         let [since, _] = self.since_us;
-        let [a, b] = self.flat.map(|own| own.at(part(since, RELEASE_US)));
+        let [a, b] = self.flat.map(|own| own.at(part(since, self.step_us)));
         [a, b, self.left_height()]
     }
 
@@ -173,8 +208,9 @@ impl<'a> Foot<'a> {
         calm: bool,
         elapsed_us: u32,
     ) -> Option<Wanted> {
-        for since in &mut self.since_us {
-            *since = since.saturating_add(elapsed_us).min(RELEASE_US);
+        let whole = [self.step_us, RELEASE_US];
+        for (since, whole) in self.since_us.iter_mut().zip(whole) {
+            *since = since.saturating_add(elapsed_us).min(whole);
         }
         if contact.is_none() && self.state == State::Free {
             self.before = None;
@@ -188,12 +224,11 @@ impl<'a> Foot<'a> {
                 self.state = State::Locked(point);
             }
             (State::Locked(_), Some(_)) => {}
-            (State::Locked(_), None) => self.release(),
+            (State::Locked(_), None) => self.release(self.flat.map(|own| i64::from(own.d).abs()).into_iter().fold(0, i64::max)),
             (_, Some(point)) => {
                 let at = sum(world(point), self.left().map(i64::from));
                 if self.lands(point, at, calm, elapsed_us) {
-                    let [a, b, _] = self.left();
-                    self.flat = [a, b].map(Ease::at_rest);
+                    self.rest();
                     (self.state, self.anchor, self.level) = (State::Locked(point), at, false);
                 }
             }
@@ -202,7 +237,7 @@ impl<'a> Foot<'a> {
         if let State::Locked(point) = self.state {
             let at = frame.to_world(self.point(pose, &places, point));
             self.keep(difference(self.anchor, at), calm, elapsed_us);
-        } else if self.since_us == [RELEASE_US; 2] {
+        } else if self.since_us == whole {
             (self.state, self.lift) = (State::Free, 0);
         }
         let left = self.left();
@@ -224,7 +259,7 @@ impl<'a> Foot<'a> {
         let rests = difference(at, self.at).iter().all(|way| way.abs() <= slow);
         match self.state {
             _ if self.before.is_none() => true,
-            State::Released if self.steps => calm && since >= RELEASE_US,
+            State::Released if self.steps => calm && since >= self.step_us,
             _ => calm || (self.before == Some(point) && rests),
         }
     }
@@ -244,7 +279,7 @@ impl<'a> Foot<'a> {
         }
         let most = i64::from(self.limb.length() / 4);
         if a.abs() > most || b.abs() > most {
-            self.release();
+            self.release(most);
             self.steps = true;
         }
     }

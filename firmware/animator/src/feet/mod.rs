@@ -92,33 +92,32 @@ impl<'a> Feet<'a> {
         Ok(())
     }
 
-    /// Places the clip that was entered by the feet that are held and are on the ground in it, too.
+    /// Places the clip that was entered by the feet that are held and are on the ground in it, too. Others that are on the ground before or after step
+    /// to their places.
     fn enter(&mut self, animator: &mut Animator<'a, '_>, frame: &Frame, contacts: [Option<u8>; FEET]) {
         // Its own pose is asked for below.
         animator.leave_carried();
         let mut ways = [None; FEET];
         for ((foot, contact), way) in self.feet.iter().zip(contacts).zip(&mut ways) {
-            let anchor = contact.and_then(|point| Some((point, foot.held_at(animator.pose, frame, point)?)));
-            let Some((point, anchor)) = anchor else { continue };
-            let values = animator.track().values();
+            let Some(point) = contact.or(foot.held()) else { continue };
+            let (at, values) = (foot.place(animator.pose, frame, point), animator.track().values());
             let place = foot.point(values, &foot.limb.places(values), point);
-            let [a, b, _] = difference(anchor, Frame::new(animator.end_of_glide(), animator.root.up()).to_world(place));
-            *way = Some((point, anchor, [a, b]));
+            let [a, b, _] = difference(at, Frame::new(animator.end_of_glide(), animator.root.up()).to_world(place));
+            *way = Some(Entered { point, at, way: [a, b], stays: contact.is_some() && foot.held().is_some() });
         }
         let length = self.feet.first().map_or(0, |foot| i64::from(foot.limb.length()));
-        let glide =
-            if animator.transition_left() < 2 { [0; 2] } else { glide(ways.map(|way| way.map(|(_, _, way)| way)), length) };
+        let stays = ways.map(|own| own.filter(|own| own.stays).map(|own| own.way));
+        let glide = if animator.transition_left() < 2 { [0; 2] } else { glide(stays, length) };
         animator.glide(glide);
+        let left_us = u64::from(animator.transition_left()) * u64::from(animator.track().clip().frame_time_ns()) / 1000;
         let [glide_a, glide_b] = glide;
-        for ((foot, contact), way) in self.feet.iter_mut().zip(contacts).zip(ways) {
-            let rest = way.map(|(_, _, [a, b])| (a.wrapping_sub(glide_a)).abs().max((b.wrapping_sub(glide_b)).abs()));
-            match (way, rest) {
-                (Some((point, anchor, _)), Some(rest)) if rest <= length / 12 => foot.hold_on(point, anchor),
-                (_, rest) => {
-                    let lift = rest.unwrap_or(0).min(length / 4) / 4;
-                    let up = if animator.track().clip().rig().up().is_negative() { -lift } else { lift };
-                    foot.land_later(contact, up as i32);
-                }
+        for ((foot, contact), entered) in self.feet.iter_mut().zip(contacts).zip(ways) {
+            let Some(Entered { point, at, way: [a, b], stays }) = entered else { continue };
+            let far = a.wrapping_sub(glide_a).saturating_abs().max(b.wrapping_sub(glide_b).saturating_abs());
+            if stays && far <= length / 12 {
+                foot.hold_on(point, at);
+            } else {
+                foot.step(contact, far, left_us.min(u32::MAX.into()) as u32);
             }
         }
     }
@@ -144,6 +143,18 @@ impl<'a> Feet<'a> {
         let most = self.feet.first().map_or(0, |foot| shifted(self.most_drop, foot.limb.shift()));
         drop.min(most.into()) as i32
     }
+}
+
+/// A foot when a clip is entered: on the ground in it, or held before.
+#[derive(Clone, Copy)]
+struct Entered {
+    /// The point of it that is or was on the ground, and where that is in the world.
+    point: u8,
+    at: [i64; 3],
+    /// The way to there from its place in the clip.
+    way: [i64; 2],
+    /// Whether it is on the ground before and after.
+    stays: bool,
 }
 
 /// The way that brings the feet to where they are held: of two the mean, or the shorter one if they are far apart.

@@ -5,8 +5,9 @@ use super::render::{EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, Size, easy_scale,
 use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, progress, refuse_foreign, report};
 use anyhow::{Context, Result, anyhow, bail, ensure};
+use pantin::Bank;
 use pantin_animator::Character;
-use pantin_animator::machine::Table;
+use pantin_animator::machine::{FeetTable, Table};
 use pantin_animator::session::Replay;
 use pantin_figure::{CameraTarget, View};
 use pantin_images::animation::Animation;
@@ -28,8 +29,8 @@ const COLUMNS: usize = 6;
 /// Play a recorded session of a bank's state machine, as pictures or as places of the joints.
 ///
 /// The session is a text of inputs and their times (see firmware/animator/MACHINE.md). The output's extension selects the kind: .gif and .apng are
-/// animations, .png is a contact sheet, .csv has a row for each picture with the state, the place and heading of the figure, and where every joint is in
-/// the world, in cm.
+/// animations, .png is a contact sheet, .csv has a row for each picture with the state, the heading of the figure, the joint at which each foot is held
+/// (empty while it is free), and where every joint is in the world, in cm.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin steer character.ptb session.txt -o steer.gif
@@ -222,18 +223,22 @@ impl<'a> Shown<'a> {
     fn table(&self, out: &mut impl Write) -> Result<()> {
         let rate = f64::from(self.arguments.fps);
         let mut table = csv::Writer::from_writer(out);
+        let feet = FeetTable::of(&Bank::new_checked(self.bytes)?)?;
+        let rows = feet.iter().flat_map(|feet| (0..feet.feet()).filter_map(|foot| feet.foot(foot)));
+        let ankles: Vec<usize> = rows.map(|row| row.ankle.into()).collect();
+        let mut names = Vec::new();
         self.play(|picture, character| {
             let places = joints(character);
-            let clip = *character.animator().track().clip();
             if picture == 0 {
+                let clip = *character.animator().track().clip();
+                let name = |(index, joint): (usize, pantin::Joint)| match joint.end_site {
+                    true => format!("end_{index}"),
+                    false => String::from_utf8_lossy(joint.name_bytes()).into_owned(),
+                };
+                names = clip.rig().joints().enumerate().map(name).collect();
                 let mut row: Vec<String> = ["seconds", "state", "clip_frame", "heading_degrees"].map(String::from).into();
-                for (index, joint) in clip.rig().joints().enumerate() {
-                    let name = match joint.end_site {
-                        true => format!("end_{index}"),
-                        false => String::from_utf8_lossy(joint.name_bytes()).into_owned(),
-                    };
-                    row.extend(["x", "y", "z"].map(|axis| format!("{name}_{axis}")));
-                }
+                row.extend(ankles.iter().map(|&ankle| format!("held_{}", names[ankle])));
+                row.extend(names.iter().flat_map(|name| ["x", "y", "z"].map(|axis| format!("{name}_{axis}"))));
                 table.write_record(&row)?;
             }
             let (_, placement) = character.pose();
@@ -243,6 +248,9 @@ impl<'a> Shown<'a> {
                 character.animator().track().frame().to_string(),
                 format!("{:.3}", placement.heading.turns().to_num::<f64>() * 360.0),
             ];
+            let held =
+                |foot: usize| character.feet().and_then(|feet| feet.held(foot)).map(|joint| names[usize::from(joint)].clone());
+            row.extend((0..ankles.len()).map(|foot| held(foot).unwrap_or_default()));
             row.extend(places.iter().flatten().map(|x| format!("{x:.3}")));
             table.write_record(&row)?;
             Ok(())

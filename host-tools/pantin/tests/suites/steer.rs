@@ -48,7 +48,7 @@ fn the_committed_bank_is_what_the_tool_makes() {
 const RATE: u16 = 30;
 const CM_OF_GROUND: f64 = 1.0;
 /// With feet that are held: a foot that leaves the ground in a transition lags behind its clip.
-const CM_OF_HELD: f64 = 2.1;
+const CM_OF_HELD: f64 = 1.5;
 /// How far the tips of the toes may be below the ground while a transition mixes two steps: nothing holds them there.
 const CM_IN_TRANSITIONS: f64 = 5.0;
 
@@ -183,7 +183,7 @@ fn the_command_writes_pictures_and_places() {
     }
     let table = std::fs::read_to_string(path("a.csv")).unwrap();
     assert_eq!(table.lines().count(), 1 + 16);
-    assert!(table.starts_with("seconds,state,clip_frame,heading_degrees,root_x,"));
+    assert!(table.starts_with("seconds,state,clip_frame,heading_degrees,held_left-foot,held_right-foot,root_x,"));
     let fixed = pantin(&["steer", "--fixed", "-o"], &[&path("f.gif"), &path("c.ptb"), &path("s.txt")]);
     assert!(fixed.status.success(), "{}", String::from_utf8_lossy(&fixed.stderr));
     for (name, options, why) in [

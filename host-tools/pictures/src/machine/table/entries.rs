@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use pantin_convert::Memory;
-use pantin_convert::edit::contacts::Contact;
+use pantin_convert::edit::contacts::{Contact, Foot};
 use pantin_convert::fk::all_positions;
 use pantin_convert::motion::Motion;
 
@@ -10,6 +10,16 @@ use pantin_convert::motion::Motion;
 const FORESIGHT: f64 = 0.1;
 /// What a foot costs that is on the ground in one clip alone, in cm.
 const OTHER_FOOT_CM: f64 = 8.0;
+/// What a cm costs by which the figure glides beside its way, and by which a foot steps to another place.
+const GLIDE: f64 = 0.3;
+const STEP: f64 = 0.2;
+/// What a cm costs by which a foot moves over the ground.
+const DRAG: f64 = 1.0;
+/// The height below which it does, in cm.
+const LOW_CM: f64 = 2.0;
+/// The farthest that a foot is held beside its place in the new clip, in cm: one that is farther steps there, and is lifted by at most this.
+const HELD_CM: f64 = 6.0;
+const LIFT_CM: f64 = 4.5;
 /// Seconds of a clip that is no loop in which a transition may enter it.
 const FIRST: f64 = 0.2;
 /// Frames of a clip that are compared at most.
@@ -19,14 +29,17 @@ const FRAMES: usize = 240;
 pub(super) struct Clip {
     /// For each frame, each joint: horizontal places about their mean, the height, and the same of the velocity, in cm and cm a second.
     poses: Vec<Vec<[f64; 6]>>,
-    /// Which feet are on the ground.
-    feet: Vec<Vec<bool>>,
+    /// The joint of each foot that is on the ground.
+    feet: Vec<Vec<Option<usize>>>,
+    /// The joints of each foot, and the least height of each joint of the figure.
+    joints: Vec<Vec<usize>>,
+    ground: Vec<f64>,
     frame_time: f64,
     looped: bool,
 }
 
 impl Clip {
-    pub fn of(motion: &Motion, contacts: &[Vec<Contact>]) -> Result<Clip> {
+    pub fn of(motion: &Motion, feet: &[Foot], contacts: &[Vec<Contact>]) -> Result<Clip> {
         let places = all_positions(&motion.rig, &motion.values, motion.frames, Memory::default())?;
         let up = motion.rig.up.axis();
         let axes = [(up + 1) % 3, (up + 2) % 3, up];
@@ -43,44 +56,141 @@ impl Clip {
             };
             (0..places[frame].len()).map(joint).collect()
         };
-        let feet = |frame: usize| {
-            let down = |foot: &Vec<Contact>| foot.iter().any(|contact| (contact.from..contact.to).contains(&frame));
-            contacts.iter().map(down).collect()
+        let stands = |frame: usize| {
+            let joint = |(foot, own): (&Foot, &Vec<Contact>)| {
+                let contact = own.iter().find(|contact| (contact.from..contact.to).contains(&frame))?;
+                Some(contact.point.checked_sub(1).map_or(foot.ankle, |point| foot.points[point]))
+            };
+            feet.iter().zip(contacts).map(joint).collect()
         };
+        let poses: Vec<Vec<[f64; 6]>> = (0..motion.frames).map(pose).collect();
+        let least = |joint: usize| poses.iter().map(|pose| pose[joint][2]).fold(f64::INFINITY, f64::min);
         Ok(Clip {
-            poses: (0..motion.frames).map(pose).collect(),
-            feet: (0..motion.frames).map(feet).collect(),
+            ground: (0..motion.rig.joints.len()).map(least).collect(),
+            joints: feet.iter().map(|foot| std::iter::once(foot.ankle).chain(foot.points.iter().copied()).collect()).collect(),
+            poses,
+            feet: (0..motion.frames).map(stands).collect(),
             frame_time: motion.frame_time,
             looped: motion.looped,
         })
     }
 }
 
-/// How different two instants are, in cm: the mean over the joints, after the turn about the vertical axis that brings the poses together.
-fn apart(a: (&Clip, usize), b: (&Clip, usize)) -> f64 {
-    let [own, other] = [a, b].map(|(clip, frame)| &clip.poses[frame]);
-    let (mut along, mut across) = (0.0, 0.0);
-    for (p, q) in own.iter().zip(other) {
-        along += p[0] * q[0] + p[1] * q[1];
-        across += q[0] * p[1] - q[1] * p[0];
+/// Two instants, the second of which follows the first.
+struct Change<'a> {
+    from: &'a Clip,
+    to: &'a Clip,
+    at: usize,
+    start: usize,
+    /// Frames that the transition takes.
+    frames: usize,
+    /// Cosine and sine of the turn about the vertical axis that brings the new pose to the old one.
+    turn: [f64; 2],
+}
+
+impl<'a> Change<'a> {
+    fn new((from, at): (&'a Clip, usize), (to, start): (&'a Clip, usize), frames: usize) -> Change<'a> {
+        let (mut along, mut across) = (0.0, 0.0);
+        for (p, q) in from.poses[at].iter().zip(&to.poses[start]) {
+            along += p[0] * q[0] + p[1] * q[1];
+            across += q[0] * p[1] - q[1] * p[0];
+        }
+        let (sin, cos) = across.atan2(along).sin_cos();
+        Change { from, to, at, start, frames: frames.max(1), turn: [cos, sin] }
     }
-    let (sin, cos) = across.atan2(along).sin_cos();
-    let turned = |x: f64, y: f64| [x * cos - y * sin, x * sin + y * cos];
-    let distance = |(p, q): (&[f64; 6], &[f64; 6])| {
-        let ([x, y], [u, v]) = (turned(q[0], q[1]), turned(q[3], q[4]));
-        let way = (p[0] - x).hypot(p[1] - y).hypot(p[2] - q[2]);
-        let velocity = (p[3] - u).hypot(p[4] - v).hypot(p[5] - q[5]);
-        way + FORESIGHT * velocity
-    };
-    let joints = own.len().max(1) as f64;
-    let [own_feet, other_feet] = [a, b].map(|(clip, frame)| &clip.feet[frame]);
-    let feet = own_feet.iter().zip(other_feet).filter(|(own, other)| own != other).count();
-    own.iter().zip(other).map(distance).sum::<f64>() / joints + OTHER_FOOT_CM * feet as f64
+
+    fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.turn;
+        [x * cos - y * sin, x * sin + y * cos]
+    }
+
+    /// By how much a joint's place and velocity differ in the old clip from those in the new one.
+    fn differs(&self, joint: usize) -> [[f64; 3]; 2] {
+        let (p, q) = (self.from.poses[self.at][joint], self.to.poses[self.start][joint]);
+        let ([x, y], [u, v]) = (self.turned([q[0], q[1]]), self.turned([q[3], q[4]]));
+        [[p[0] - x, p[1] - y, p[2] - q[2]], [p[3] - u, p[4] - v, p[5] - q[5]]]
+    }
+
+    /// How different the instants are, in cm: the mean over the joints, and what the feet cost.
+    fn cost(&self) -> f64 {
+        let size = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+        let joints = self.from.poses[self.at].len();
+        let apart = |joint: usize| {
+            let [place, velocity] = self.differs(joint);
+            size(place) + FORESIGHT * size(velocity)
+        };
+        (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64 + self.feet()
+    }
+
+    /// What feet cost: those that are on the ground in one clip alone or elsewhere, and those that move over the ground.
+    fn feet(&self) -> f64 {
+        let far = |[x, y]: [f64; 2]| x.hypot(y);
+        let feet: Vec<(bool, Option<[f64; 2]>)> = (self.from.feet[self.at].iter())
+            .zip(&self.to.feet[self.start])
+            .map(|(from, to)| {
+                let way = |joint| {
+                    let [[x, y, _], _] = self.differs(joint);
+                    [x, y]
+                };
+                (from.is_some() && to.is_some(), to.or(*from).map(way))
+            })
+            .collect();
+        // The figure glides to a foot that is on the ground in both clips.
+        let both = feet.iter().filter_map(|(both, way)| way.filter(|_| *both));
+        let glide = both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default();
+        let mut cost = GLIDE * far(glide);
+        for (foot, (both, way)) in feet.into_iter().enumerate() {
+            let rest = way.map_or(0.0, |[x, y]| far([x - glide[0], y - glide[1]]));
+            let held = both && rest < HELD_CM;
+            cost += STEP * rest + if way.is_none() || held { 0.0 } else { OTHER_FOOT_CM };
+            let lift = if way.is_none() || held { 0.0 } else { (rest / 4.0).min(LIFT_CM) };
+            cost += DRAG * self.drag(foot, glide, held, lift);
+        }
+        cost
+    }
+
+    /// How far a foot moves over the ground, in cm, while the transition lasts: a foot that rolls about one joint does not.
+    fn drag(&self, foot: usize, glide: [f64; 2], held: bool, lift: f64) -> f64 {
+        let (count, step) = (self.to.poses.len(), self.to.frame_time);
+        let joints: Vec<(usize, [[f64; 3]; 2])> =
+            self.to.joints[foot].iter().map(|&joint| (joint, self.differs(joint))).collect();
+        // What is left of a difference in place and in velocity, of a cm and of a cm a second.
+        let left = |frame: usize| {
+            let part = frame as f64 / self.frames as f64;
+            let rest = (1.0 - part) * (1.0 - part);
+            [rest * (1.0 + 2.0 * part), rest * part * self.frames as f64 * step]
+        };
+        let mut total = 0.0;
+        let mut is_held = held;
+        for frame in 1..=self.frames {
+            let at = if self.to.looped { (self.start + frame) % count } else { (self.start + frame).min(count - 1) };
+            is_held &= self.to.feet[at][foot].is_some();
+            if is_held {
+                continue;
+            }
+            let ([place, velocity], [place_before, velocity_before]) = (left(frame), left(frame - 1));
+            let part = frame as f64 / self.frames as f64;
+            let (mut least, mut lowest) = (f64::INFINITY, f64::INFINITY);
+            for (joint, [[x, y, z], [u, v, w]]) in &joints {
+                let pose = self.to.poses[at][*joint];
+                let way = self.turned([pose[3] * step, pose[4] * step]);
+                let moved = |own: f64, glide: f64, speed: f64| {
+                    (own - glide) * (place - place_before) + speed * (velocity - velocity_before)
+                };
+                least = least.min((way[0] + moved(*x, glide[0], *u)).hypot(way[1] + moved(*y, glide[1], *v)));
+                lowest = lowest.min(pose[2] + z * place + w * velocity - self.to.ground[*joint]);
+            }
+            if lowest + 4.0 * part * (1.0 - part) * lift < LOW_CM {
+                total += least;
+            }
+        }
+        total
+    }
 }
 
 /// Pairs of a frame of the old clip and the frame of the new one that follows it: whenever a transition is asked for, the best pair within a time is
-/// among them. `start` is the only frame of the new clip, if one is given.
-pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64) -> Vec<(usize, usize)> {
+/// among them. `start` is the only frame of the new clip, if one is given; a transition takes `length` frames of it.
+pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64, length: usize) -> Vec<(usize, usize)> {
     let (frames, others) = (from.poses.len(), to.poses.len());
     let starts: Vec<usize> = match start {
         Some(start) => vec![start.min(others - 1)],
@@ -91,7 +201,7 @@ pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64) ->
     let found: Vec<(usize, usize, f64)> = (0..frames)
         .step_by(stride)
         .filter_map(|at| {
-            let costs = starts.iter().map(|&start| (start, apart((from, at), (to, start))));
+            let costs = starts.iter().map(|&start| (start, Change::new((from, at), (to, start), length).cost()));
             costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(start, cost)| (at, start, cost))
         })
         .collect();

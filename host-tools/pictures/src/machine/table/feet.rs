@@ -2,7 +2,7 @@
 
 use super::entries::{Clip, best};
 use super::{Maker, Warning};
-use crate::machine::source::{Feet, Source, Start, Text};
+use crate::machine::source::{Feet, Kind, Source, Start, Text};
 use anyhow::{Context, Result, ensure};
 use pantin::codec::crc;
 use pantin_animator::machine::{FEET_VERSION, FeetTable, POINTS};
@@ -29,7 +29,7 @@ impl Maker<'_, '_> {
             let own = found.as_deref().unwrap_or_default();
             ensure!(motion.frames <= usize::from(u16::MAX), "clip {}: {} frames; at most 65535", quoted(name), motion.frames);
             let contacts = contacts(&motion, own, Memory::default()).with_context(place)?;
-            clips.push(Clip::of(&motion, contacts.as_deref().unwrap_or_default())?);
+            clips.push(Clip::of(&motion, own, contacts.as_deref().unwrap_or_default())?);
             match contacts {
                 Some(contacts) => {
                     for (foot, contact) in
@@ -74,13 +74,15 @@ impl Maker<'_, '_> {
                 let row = transition.get_ref();
                 if row.sync.is_some() {
                     let to = &source.states[usize::from(self.state(&row.to)?)];
+                    let length =
+                        if row.kind == Kind::Cut { 1 } else { super::transitions::length(row, &self.played(to)?.1)?.into() };
                     let [from, to] = [self.clip_of(state)?, self.clip_of(to)?].map(|clip| &clips[usize::from(clip)]);
                     let start = match &row.start {
                         Some(Start::Frame(frame)) if *frame > 0 => Some(*frame as usize),
                         _ => None,
                     };
                     let speed = state.speed.unwrap_or(1.0);
-                    for (at, start) in best(from, to, start, row.within.unwrap_or(WITHIN) * speed) {
+                    for (at, start) in best(from, to, start, row.within.unwrap_or(WITHIN) * speed, length) {
                         let [[a, b], [c, d]] = [at, start].map(|frame| (frame as u16).to_le_bytes());
                         rows.push([u8::try_from(index)?, 0, a, b, c, d]);
                     }

@@ -163,7 +163,7 @@ fn hides(first: &Row, second: &Row) -> bool {
 }
 
 /// The length of a transition in frames of the clip that it leads to.
-fn length(row: &Transition, clip: &Clip) -> Result<u8> {
+pub(super) fn length(row: &Transition, clip: &Clip) -> Result<u8> {
     let frames = match (row.frames, row.seconds) {
         (Some(_), Some(_)) => bail!("frames and seconds: a transition has one length"),
         (Some(frames), None) => frames,
