@@ -42,6 +42,7 @@ impl Clip {
     pub fn of(motion: &Motion, feet: &[Foot], contacts: &[Vec<Contact>]) -> Result<Clip> {
         let places = all_positions(&motion.rig, &motion.values, motion.frames, Memory::default())?;
         let up = motion.rig.up.axis();
+        let upward = if motion.rig.up.is_negative() { -1.0 } else { 1.0 };
         let axes = [(up + 1) % 3, (up + 2) % 3, up];
         let pose = |frame: usize| {
             let (before, after) = (frame.saturating_sub(1), (frame + 1).min(motion.frames - 1));
@@ -52,7 +53,7 @@ impl Clip {
             let joint = |joint: usize| {
                 let at = |axis: usize| places[frame][joint][axes[axis]];
                 let v = |axis: usize| (places[after][joint][axes[axis]] - places[before][joint][axes[axis]]) / seconds;
-                [at(0) - mean[0], at(1) - mean[1], at(2), v(0), v(1), v(2)]
+                [at(0) - mean[0], at(1) - mean[1], upward * at(2), v(0), v(1), upward * v(2)]
             };
             (0..places[frame].len()).map(joint).collect()
         };
