@@ -1,7 +1,7 @@
 //! What a fresh machine may lack: Rust targets, QEMU, Node.js and npm. Each is installed where that is possible, and said.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -135,6 +135,29 @@ pub fn sanitizers() -> Result<()> {
     ensure!(there()?, "clang still has no sanitizers: install those of its version");
     Ok(())
 }
+
+/// Makes sure that the compiler for Arm has the library of C++, without which it may have been installed.
+pub fn arm_cpp() -> Result<()> {
+    let there = || -> Result<bool> {
+        let output = Command::new(emulator("arm-none-eabi-gcc")?).arg("-print-file-name=libstdc++.a").output()?;
+        // The name alone, if there is none.
+        Ok(Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_absolute())
+    };
+    if there()? {
+        return Ok(());
+    }
+    let missing = "arm-none-eabi-g++ has no libstdc++";
+    ensure!(
+        paths::program("apt-get").is_some() && is_root(),
+        "{missing}; install it with: sudo apt-get install -y --no-install-recommends {ARM_CPP}"
+    );
+    install_packages(ARM_CPP).with_context(|| format!("{missing}, and it could not be installed"))?;
+    ensure!(there()?, "{missing} still: install that of its version");
+    Ok(())
+}
+
+/// The package of Debian and Ubuntu that has the library of C++ for Arm.
+const ARM_CPP: &str = "libstdc++-arm-none-eabi-newlib";
 
 fn install_packages(packages: &str) -> Result<()> {
     let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(packages.split(' ')).collect();

@@ -83,6 +83,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     for tool in ["arm-none-eabi-gcc", "arm-none-eabi-g++", "qemu-system-arm"] {
         setup::install_emulator(tool)?;
     }
+    setup::arm_cpp()?;
     let content = content(setting)?;
     let mut rows = vec![];
     let mut goals = vec![];
