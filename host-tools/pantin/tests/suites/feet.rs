@@ -325,14 +325,14 @@ transitions = [{ to = \"idle\", released = \"go\", sync = \"feet\", seconds = 0.
 ];
 
 /// Changes between motions that have no frames alike.
-const UNLIKE: Captured =     Captured {
-        name: "a run that stops, and a kick",
-        error: "2cm",
-        list: "DATA/bvh_bandai1_bow.bvh --name idle --body DATA/bvh_bandai1_bow.bvh --turn 51 --from 190 --to 206 --loop
+const UNLIKE: Captured = Captured {
+    name: "a run that stops, and a kick",
+    error: "2cm",
+    list: "DATA/bvh_bandai1_bow.bvh --name idle --body DATA/bvh_bandai1_bow.bvh --turn 51 --from 190 --to 206 --loop
 DATA/bvh_bandai1_walk.bvh --name walk --body DATA/bvh_bandai1_bow.bvh --from 65 --to 129 --loop --footsteps
 DATA/bvh_mixamo-beta_run-loop.bvh --name run --body DATA/bvh_bandai1_bow.bvh --from 0 --to 22 --loop --footsteps
 DATA/bvh_bandai1_kick.bvh --name kick --body DATA/bvh_bandai1_bow.bvh --turn 35 --from 30 --to 92",
-        machine: "start = \"idle\"
+    machine: "start = \"idle\"
 [feet]
 [[state]]
 name = \"idle\"
@@ -346,8 +346,8 @@ transitions = [{ to = \"idle\", released = \"go\", sync = \"feet\", within = 1.0
 [[state]]
 name = \"kick\"
 transitions = [{ to = \"idle\", end = true, seconds = 0.4 }]",
-        session: "1.0 hold go\n2.6 release go\n4.5 hold go\n6.8 hold fast\n9.0 release go\n9.0 release fast\n11 press kick\n14.5 hold go\n17 press kick\n17.5 release go\n20.5 hold go\n21.0 hold fast\n23.3 press kick\n23.6 release go\n23.6 release fast\n27 hold go\n28.1 hold fast\n30.2 release go\n30.2 release fast\n33 end",
-    };
+    session: "1.0 hold go\n2.6 release go\n4.5 hold go\n6.8 hold fast\n9.0 release go\n9.0 release fast\n11 press kick\n14.5 hold go\n17 press kick\n17.5 release go\n20.5 hold go\n21.0 hold fast\n23.3 press kick\n23.6 release go\n23.6 release fast\n27 hold go\n28.1 hold fast\n30.2 release go\n30.2 release fast\n33 end",
+};
 
 /// Makes the bank of a list of captured motions; `None` without them.
 fn captured(own: &Captured, folder: &Path) -> Option<PathBuf> {
