@@ -127,13 +127,7 @@ pub fn sanitizers() -> Result<()> {
         let files = fs::read_dir(folder).into_iter().flatten().flatten();
         Ok(files.into_iter().any(|file| file.file_name().to_string_lossy().starts_with("libclang_rt.asan")))
     };
-    if there()? {
-        return Ok(());
-    }
-    ensure!(paths::program("apt-get").is_some() && is_root(), "clang has no sanitizers; {}", advice("clang"));
-    install_packages(debian("clang")).context("clang has no sanitizers, and they could not be installed")?;
-    ensure!(there()?, "clang still has no sanitizers: install those of its version");
-    Ok(())
+    part("clang has no sanitizers", there, debian("clang"), &advice("clang"))
 }
 
 /// Makes sure that the compiler for Arm has the library of C++, without which it may have been installed.
@@ -143,28 +137,11 @@ pub fn arm_cpp() -> Result<()> {
         // The name alone, if there is none.
         Ok(Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_absolute())
     };
-    if there()? {
-        return Ok(());
-    }
-    let missing = "arm-none-eabi-g++ has no libstdc++";
-    ensure!(
-        paths::program("apt-get").is_some() && is_root(),
-        "{missing}; install it with: sudo apt-get install -y --no-install-recommends {ARM_CPP}"
-    );
-    install_packages(ARM_CPP).with_context(|| format!("{missing}, and it could not be installed"))?;
-    ensure!(there()?, "{missing} still: install that of its version");
-    Ok(())
+    let package = "libstdc++-arm-none-eabi-newlib";
+    part("arm-none-eabi-g++ has no libstdc++", there, package, &format!("install it with: {}", apt_line(package)))
 }
 
-/// The package of Debian and Ubuntu that has the library of C++ for Arm.
-const ARM_CPP: &str = "libstdc++-arm-none-eabi-newlib";
-
-fn install_packages(packages: &str) -> Result<()> {
-    let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(packages.split(' ')).collect();
-    apt_get(&["update"]).and_then(|()| apt_get(&install))
-}
-
-/// Makes sure that the library of mGBA, the Game Boy Advance's emulator, can be linked: installs it on Debian and Ubuntu as root.
+/// Makes sure that the library of mGBA, the Game Boy Advance's emulator, can be linked.
 pub fn mgba() -> Result<()> {
     ensure!(paths::program("cc").is_some(), "cc is missing, which compiles the program that drives mGBA");
     let there = || -> Result<bool> {
@@ -173,22 +150,29 @@ pub fn mgba() -> Result<()> {
         let status = cc.stdout(Stdio::null()).stderr(Stdio::null()).status().context("cannot start cc")?;
         Ok(status.success())
     };
+    let advice = format!("install it with: {} (or https://mgba.io, with its headers)", apt_line("libmgba-dev"));
+    part("the library of mGBA (0.10) is missing", there, "libmgba-dev", &advice)
+}
+
+/// Makes sure that what packages of Debian and Ubuntu have is there: installs them as root, else says what is missing and how to get it.
+fn part(missing: &str, there: impl Fn() -> Result<bool>, packages: &str, advice: &str) -> Result<()> {
     if there()? {
         return Ok(());
     }
-    if paths::program("apt-get").is_some() && is_root() {
-        apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", MGBA]))?;
-    }
-    ensure!(
-        there()?,
-        "the library of mGBA (0.10) is missing; install it with: sudo apt-get install -y --no-install-recommends {MGBA} \
-         (or https://mgba.io, with its headers)"
-    );
+    ensure!(paths::program("apt-get").is_some() && is_root(), "{missing}; {advice}");
+    install_packages(packages).with_context(|| format!("{missing}, and it could not be installed"))?;
+    ensure!(there()?, "{missing}, though its packages were installed; {advice}");
     Ok(())
 }
 
-/// The package of Debian and Ubuntu that has mGBA's library and headers.
-const MGBA: &str = "libmgba-dev";
+fn apt_line(packages: &str) -> String {
+    format!("sudo apt-get install -y --no-install-recommends {packages}")
+}
+
+fn install_packages(packages: &str) -> Result<()> {
+    let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(packages.split(' ')).collect();
+    apt_get(&["update"]).and_then(|()| apt_get(&install))
+}
 
 /// Major and minor version of the emulator.
 pub fn version(name: &str) -> Result<(u32, u32)> {
@@ -236,7 +220,7 @@ fn debian(name: &str) -> &str {
 
 /// How to get it.
 pub fn advice(name: &str) -> String {
-    let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
+    let apt = paths::program("apt-get").map(|_| apt_line(debian(name)));
     let emulator = name.starts_with("qemu");
     let package = if name == "node" { "nodejs" } else { name };
     let others = [
