@@ -403,10 +403,10 @@ static void to_pose(const standing *s, const int32_t *way, int32_t *to) {
 /* The length of a stretched leg, in the unit of position channels. */
 static int32_t length_of(const pantin_foot *f, int16_t shift) { return shifted(f->upper[0] + f->lower[0], -shift); }
 
-/* Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by a 16th of the leg at most. */
+/* Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by an eighth of the leg at most. */
 static void release(pantin_foot *f, int16_t shift, int64_t far) {
     pantin_foot_state *s = &f->state;
-    int32_t lift = (int32_t)(least(far, length_of(f, shift) / 4) / 4);
+    int32_t lift = (int32_t)(least(far, length_of(f, shift) / 2) / 4);
     s->lift = f->upside_down ? -lift : lift;
     s->doing = RELEASED;
     s->steps = 0;

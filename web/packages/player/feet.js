@@ -194,7 +194,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const release = (again, far) => {
       point = -1;
       steps = again;
-      lift = upward * (min(far, length() >> 2) >> 2);
+      lift = upward * (min(far, length() >> 1) >> 2);
       whole = RELEASE;
       eases = eases.map(([d, v, since], axis) => [d, v, axis < 2 || isLevel ? 0 : since]);
       isLevel = false;

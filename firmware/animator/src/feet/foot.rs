@@ -171,9 +171,9 @@ impl<'a> Foot<'a> {
         }
     }
 
-    /// Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by a 16th of the leg at most.
+    /// Lets go of a foot that is this far from where it goes, along one axis: it is lifted on its way by a quarter of this, and by an eighth of the leg at most.
     fn release(&mut self, far: i64) {
-        let lift = (far.min(i64::from(self.limb.length() / 4)) / 4) as i32;
+        let lift = (far.min(i64::from(self.limb.length() / 2)) / 4) as i32;
         self.lift = if self.upside_down { -lift } else { lift };
         (self.state, self.steps, self.step_us) = (State::Released, false, RELEASE_US);
         let [flat, height] = &mut self.since_us;

@@ -496,3 +496,21 @@ fn states_between_which_held_inputs_go_back_and_forth_are_warned_of() {
     // An input that leads away from any state is fired.
     assert!(!any("input = \"halt\"").iter().any(|text| text.contains("back and forth")));
 }
+
+#[test]
+fn a_change_of_velocity_that_no_body_could_make_is_warned_of() {
+    let stops = |seconds: f64| {
+        let text = format!(
+            "[feet]\n[[state]]\nname = \"run\"\ntransitions = [{{ to = \"stand\", input = \"halt\", seconds = {seconds} }}]\n\
+             [[state]]\nname = \"stand\"\nclip = \"walk\"\nspeed = 0.0\ntransitions = [{{ to = \"run\", input = \"go\", seconds = 1.0 }}]\n"
+        );
+        warnings(&text).into_iter().filter(|text| text.contains("velocity")).collect::<Vec<String>>()
+    };
+    // From 1.8 m/s.
+    let hasty = stops(0.1);
+    assert!(
+        hasty.len() == 1 && hasty[0].starts_with("a.toml:4: state `run`: the velocity of the figure would change by 1."),
+        "{hasty:?}"
+    );
+    assert_eq!(stops(1.0), [""; 0]);
+}

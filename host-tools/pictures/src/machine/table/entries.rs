@@ -19,7 +19,7 @@ const DRAG: f64 = 1.0;
 const LOW_CM: f64 = 2.0;
 /// The farthest that a foot is held beside its place in the new clip, in cm: one that is farther steps there, and is lifted by at most this.
 const HELD_CM: f64 = 6.0;
-const LIFT_CM: f64 = 4.5;
+const LIFT_CM: f64 = 9.0;
 /// Seconds of a clip that is no loop in which a transition may enter it.
 const FIRST: f64 = 0.2;
 /// Frames of a clip that are compared at most.
@@ -75,6 +75,15 @@ impl Clip {
             looped: motion.looped,
         })
     }
+
+    pub fn frames(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// In seconds.
+    pub fn frame_time(&self) -> f64 {
+        self.frame_time
+    }
 }
 
 /// Two instants, the second of which follows the first.
@@ -103,6 +112,14 @@ impl<'a> Change<'a> {
     fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.turn;
         [x * cos - y * sin, x * sin + y * cos]
+    }
+
+    /// By how much the figure's horizontal velocity changes, in cm a second, at the speeds at which the clips play.
+    fn velocity_change(&self, [from, to]: [f64; 2]) -> f64 {
+        let mean = |pose: &[[f64; 6]], axis: usize| pose.iter().map(|joint| joint[axis]).sum::<f64>() / pose.len().max(1) as f64;
+        let (old, new) = (&self.from.poses[self.at], &self.to.poses[self.start]);
+        let [x, y] = self.turned([mean(new, 3), mean(new, 4)]);
+        (from * mean(old, 3) - to * x).hypot(from * mean(old, 4) - to * y)
     }
 
     /// By how much a joint's place and velocity differ in the old clip from those in the new one.
@@ -220,4 +237,10 @@ pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64, le
     chosen.sort_unstable();
     chosen.dedup();
     chosen
+}
+
+/// The least change of the figure's velocity in a transition at one of these pairs of frames, in cm a second, for the speeds of the two states.
+pub(super) fn velocity_change(from: &Clip, to: &Clip, pairs: &[(usize, usize)], speeds: [f64; 2]) -> f64 {
+    let changes = pairs.iter().map(|&(at, start)| Change::new((from, at), (to, start), 1).velocity_change(speeds));
+    changes.fold(f64::INFINITY, f64::min)
 }

@@ -1,22 +1,25 @@
 //! The table of feet: when which point of a foot is on the ground in each clip.
 
-use super::entries::{Clip, best};
+use super::entries::{Clip, best, velocity_change};
+use super::transitions::length;
 use super::{Maker, Warning};
-use crate::machine::source::{Feet, Kind, Source, Start, Text};
+use crate::machine::source::{Feet, Kind, Source, Start, Text, Transition};
 use anyhow::{Context, Result, ensure};
 use pantin::codec::crc;
 use pantin_animator::machine::{FEET_VERSION, FeetTable, POINTS};
+use pantin_convert::Memory;
 use pantin_convert::edit::contacts::{contacts, feet};
 use pantin_convert::expand::expand;
 use pantin_convert::import::text::quoted;
-use pantin_convert::{Memory, Remedy};
 
 /// The longest that a transition waits to begin, in seconds, where the file states none.
 const WITHIN: f64 = 0.5;
+/// The greatest change of velocity that looks like a body's, in cm a second, a second: beyond it shoes slide on a floor.
+const MOST_ACCELERATION: f64 = 700.0;
 
 impl Maker<'_, '_> {
     /// The table's bytes.
-    pub(super) fn feet(&mut self, named: &Feet, source: &Source) -> Result<Vec<u8>> {
+    pub(super) fn feet(&mut self, named: &Feet, source: &Source, file: &Text) -> Result<Vec<u8>> {
         let mut found = None;
         let mut clips = Vec::new();
         let (mut ends, mut rows): (Vec<u16>, Vec<[u8; 6]>) = (Vec::new(), Vec::new());
@@ -41,13 +44,13 @@ impl Maker<'_, '_> {
                 }
                 None => {
                     let text = format!("clip {}: its ground moves, as on a treadmill, so no foot is held in it", quoted(name));
-                    self.warnings.push(Warning::new(text, None::<Remedy>));
+                    self.warnings.push(Warning::new(text, None));
                 }
             }
             ends.push(u16::try_from(rows.len()).context("more than 65535 contacts of feet")?);
         }
         let feet = found.unwrap_or_default();
-        let entries = self.entries(source, &clips)?;
+        let entries = self.entries(source, file, &clips)?;
         let count = u8::try_from(ends.len()).context("more than 255 clips")?;
         let mut out = vec![FEET_VERSION, feet.len() as u8, count, 0];
         out.extend((rows.len() as u16).to_le_bytes());
@@ -65,29 +68,37 @@ impl Maker<'_, '_> {
         Ok(out)
     }
 
-    /// The rows of instants at which transitions with `sync = "feet"` may begin.
-    fn entries(&self, source: &Source, clips: &[Clip]) -> Result<Vec<[u8; 6]>> {
+    /// The rows of instants at which transitions with `sync = "feet"` may begin. Warns of transitions in which the figure could not change its velocity.
+    fn entries(&mut self, source: &Source, file: &Text, clips: &[Clip]) -> Result<Vec<[u8; 6]>> {
         let mut rows = Vec::new();
         let mut index = source.any.len();
         for state in &source.states {
             for transition in &state.transitions {
                 let row = transition.get_ref();
+                let target = &source.states[usize::from(self.state(&row.to)?)];
+                let length = if row.kind == Kind::Cut { 1 } else { length(row, &self.played(target)?.1)?.into() };
+                let [from, to] = [self.clip_of(state)?, self.clip_of(target)?].map(|clip| &clips[usize::from(clip)]);
+                let speeds = [state, target].map(|state| state.speed.unwrap_or(1.0));
+                let pairs = pairs(row, from, to, speeds[0], length);
                 if row.sync.is_some() {
-                    let to = &source.states[usize::from(self.state(&row.to)?)];
-                    let length =
-                        if row.kind == Kind::Cut { 1 } else { super::transitions::length(row, &self.played(to)?.1)?.into() };
-                    let [from, to] = [self.clip_of(state)?, self.clip_of(to)?].map(|clip| &clips[usize::from(clip)]);
-                    let start = match &row.start {
-                        Some(Start::Frame(frame)) if *frame > 0 => Some(*frame as usize),
-                        _ => None,
-                    };
-                    let speed = state.speed.unwrap_or(1.0);
-                    for (at, start) in best(from, to, start, row.within.unwrap_or(WITHIN) * speed, length) {
+                    for &(at, start) in &pairs {
                         let [[a, b], [c, d]] = [at, start].map(|frame| (frame as u16).to_le_bytes());
                         rows.push([u8::try_from(index)?, 0, a, b, c, d]);
                     }
                 }
                 index += 1;
+                let (change, seconds) = (velocity_change(from, to, &pairs, speeds), length as f64 * to.frame_time());
+                if row.kind != Kind::Cut && change > MOST_ACCELERATION * seconds {
+                    let text = format!(
+                        "{}: state {}: the velocity of the figure would change by {:.1} m/s in the {seconds:.2} s to {}, faster than a body can: \
+                         a longer transition, or a state between the two, looks better",
+                        file.at(transition.span()),
+                        quoted(state.name.get_ref()),
+                        change / 100.0,
+                        quoted(&row.to),
+                    );
+                    self.warnings.push(Warning::new(text, None));
+                }
             }
         }
         Ok(rows)
@@ -113,5 +124,18 @@ impl Maker<'_, '_> {
             );
         }
         Ok(())
+    }
+}
+
+/// Pairs of frames of the old and of the new clip at which a transition may begin.
+fn pairs(row: &Transition, from: &Clip, to: &Clip, speed: f64, length: usize) -> Vec<(usize, usize)> {
+    let start = match &row.start {
+        Some(Start::Frame(frame)) => *frame as usize,
+        _ => 0,
+    };
+    match row.sync {
+        Some(_) => best(from, to, Some(start).filter(|start| *start > 0), row.within.unwrap_or(WITHIN) * speed, length),
+        None if row.end.is_some() => vec![(from.frames() - 1, start)],
+        None => (0..from.frames()).map(|frame| (frame, start)).collect(),
     }
 }

@@ -54,7 +54,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let feet = source
         .feet
         .as_ref()
-        .map(|feet| maker.feet(feet.get_ref(), source).with_context(|| format!("{}: feet", file.at(feet.span()))));
+        .map(|feet| maker.feet(feet.get_ref(), source, file).with_context(|| format!("{}: feet", file.at(feet.span()))));
     Ok(Made { table, feet: feet.transpose()?, warnings: maker.warnings })
 }
 
