@@ -50,7 +50,12 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
     bool palette(const uint16_t *colors) { return pantin_face_palette(&face, colors) == PANTIN_OK; }
 
     /* Sets the rate of the sound that follows, 8000 to 48000 Hz: 16000 without a call. Returns false for another. */
-    bool soundRate(uint32_t rate) { return pantin_talk_open(&talk, rate) == PANTIN_OK; }
+    bool soundRate(uint32_t rate) {
+        pantin_talk other;
+        if (pantin_talk_open(&other, rate) != PANTIN_OK) return false;
+        talk = other;
+        return true;
+    }
 
     /* Moves the lips by sound as it is played or recorded. Parts of up to 30 ms give smooth lips. */
     void sound(const int16_t *samples, size_t count) { pantin_talk_push(&talk, samples, count); }

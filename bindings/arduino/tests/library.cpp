@@ -102,7 +102,7 @@ static void faces() {
     NEED(face.begin(pantin_cartoon, sizeof pantin_cartoon, 160, 120) && small.begin(pantin_cartoon, sizeof pantin_cartoon, 128, 64));
     NEED(face.emotes(pantin_emotes, PANTIN_EMOTES) && small.emotes(pantin_emotes, PANTIN_EMOTES));
     NEED(!face.emote("nobody") && face.emote("happy") && small.emote("sad"));
-    NEED(!face.soundRate(7000) && face.soundRate(16000) && !face.viseme(15, 0) && !face.weight("no such unit", 1));
+    NEED(face.soundRate(8000) && !face.soundRate(7000) && face.talk.rate == 8000 && face.soundRate(16000) && !face.viseme(15, 0) && !face.weight("no such unit", 1));
     for (int i = 0; i < 480; i++) samples[i] = i * 700 % 16000 < 8000 ? 6000 : -6000;
     uint32_t pictures = 0;
     for (uint32_t now = 0; now < 9000; now += 15) {

@@ -1484,7 +1484,7 @@ pantin_result pantin_face_play(pantin_face *face, const uint8_t *clip, uint32_t 
     pantin_source source;
     pantin_clip opened;
     pantin_result result;
-    uint32_t channels, count, i;
+    uint32_t channels, moving, count, i;
     uint8_t side;
     int16_t (*swap)[2];
     if (!face->vertices) return PANTIN_ERROR_HEAD;
@@ -1494,7 +1494,9 @@ pantin_result pantin_face_play(pantin_face *face, const uint8_t *clip, uint32_t 
     channels = opened.rig.channels;
     count = bind(&face->model, &opened.rig, NULL);
     if (count == 0) return PANTIN_NOT_FOUND;
-    i = channels * (uint32_t)(sizeof(pantin_channel) + sizeof(int32_t)) + count * (uint32_t)sizeof(pantin_face_drive);
+    /* A key clip has a state for each key. */
+    moving = opened.states > channels ? opened.states : channels;
+    i = channels * (uint32_t)sizeof(int32_t) + moving * (uint32_t)sizeof(pantin_channel) + count * (uint32_t)sizeof(pantin_face_drive);
     if (count > 0xffff || i > face->rest_bytes) {
         face->needed = lend(face, NULL) + i;
         return PANTIN_NO_ROOM;
@@ -1514,10 +1516,10 @@ pantin_result pantin_face_play(pantin_face *face, const uint8_t *clip, uint32_t 
     result = pantin_open(&face->clip, &face->source, NULL);
     if (result == PANTIN_OK) {
         uint8_t *at = (uint8_t *)face->rest;
-        pantin_channel *moving = (pantin_channel *)(void *)(at + channels * sizeof(int32_t));
-        face->drives = (pantin_face_drive *)(void *)(moving + channels);
+        pantin_channel *states = (pantin_channel *)(void *)(at + channels * sizeof(int32_t));
+        face->drives = (pantin_face_drive *)(void *)(states + moving);
         face->drive_count = (uint16_t)bind(&face->model, &face->clip.rig, face->drives);
-        result = pantin_start(&face->player, &face->clip, (int32_t *)face->rest, channels, moving, channels);
+        result = pantin_start(&face->player, &face->clip, (int32_t *)face->rest, channels, states, moving);
         face->playing = result == PANTIN_OK;
     }
     read_pose(face);

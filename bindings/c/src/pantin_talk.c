@@ -185,11 +185,13 @@ static void due(pantin_talk *t) {
 
 void pantin_talk_step(pantin_talk *talk, uint16_t ms) {
     uint32_t left = (uint32_t)talk->rest + ms;
+    /* The time of a step before which there was sound is the sound's own. */
+    uint16_t most = talk->silent_ms == 0 ? SILENT_MS - TICK_MS : SILENT_MS;
     for (; left >= TICK_MS; left -= TICK_MS) {
         int timed = talk->viseme || talk->waiting;
         talk->now += TICK_MS;
         due(talk);
-        talk->silent_ms = (uint16_t)(timed || talk->silent_ms == SILENT_MS ? SILENT_MS : talk->silent_ms + TICK_MS);
+        talk->silent_ms = (uint16_t)(timed ? SILENT_MS : talk->silent_ms >= most ? talk->silent_ms : talk->silent_ms + TICK_MS);
         if (talk->silent_ms < SILENT_MS) continue;
         memset(talk->targets, 0, sizeof talk->targets);
         if (talk->viseme) talk->targets[talk->viseme - 1] = PANTIN_TALK_FULL;

@@ -61,7 +61,8 @@ typedef struct pantin_talk {
     uint16_t silent_ms;     /* since samples were pushed */
 } pantin_talk;
 
-/* Begins with a closed mouth. `rate` is that of the samples in Hz, 8,000 to 48,000; PANTIN_NOT_FOUND for another. */
+/* Begins with a closed mouth. `rate` is that of the samples in Hz, 8,000 to 48,000; PANTIN_NOT_FOUND for another, with which the mouth
+ * hears nothing. Sound of another rate needs it again. */
 pantin_result pantin_talk_open(pantin_talk *talk, uint32_t rate);
 
 /* Listens to `count` samples of one channel. The weights follow every 10 ms of sound, unless a viseme is shown. No effect before pantin_talk_open. */
@@ -72,7 +73,8 @@ void pantin_talk_push(pantin_talk *talk, const int16_t *samples, size_t count);
  * PANTIN_NO_ROOM if PANTIN_TALK_WAITING visemes wait already. */
 pantin_result pantin_talk_viseme(pantin_talk *talk, uint8_t viseme, uint32_t at);
 
-/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. */
+/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. The samples of a time are pushed
+ * before its step, which may be longer. */
 void pantin_talk_step(pantin_talk *talk, uint16_t ms);
 
 #ifdef __cplusplus

@@ -2,4 +2,4 @@
 #include "pantin_face.h"
 
 pantin_face face;
-uint32_t cartoon[PANTIN_FACE_WORDS(97, 6)], wireframe[PANTIN_FACE_WORDS(239, 6)];
+uint32_t cartoon[PANTIN_FACE_WORDS(97, 7)], wireframe[PANTIN_FACE_WORDS(239, 7)];

@@ -1,7 +1,7 @@
 /* What a face promises besides its pixels: errors that change nothing, transitions without a jump, eyes that live by themselves, rows that are the
  * same however they are divided.
  *
- *     face_rules FACE.model */
+ *     face_rules FACE.model KEYS.ptn */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -281,8 +281,27 @@ static void wireframe(const char *path) {
     free(model);
 }
 
+/* A key clip has more states than its rig has channels. */
+static void key_clips(const char *path) {
+    uint32_t length, needed;
+    uint8_t *clip = file(path, &length);
+    open_cartoon(&face, memory, sizeof memory);
+    open_cartoon(&face, large, face.needed);
+    need(pantin_face_play(&face, clip, length) == PANTIN_NO_ROOM, "no room for a key clip", path);
+    needed = face.needed;
+    open_cartoon(&face, large, needed);
+    need(pantin_face_play(&face, clip, length) == PANTIN_OK, "what is needed suffices for a key clip", path);
+    draw(rows);
+    need(pantin_face_step(&face, 500) == PANTIN_OK, "a key clip plays", path);
+    draw(other);
+    need(memcmp(rows, other, sizeof rows) != 0, "a key clip moves the face", path);
+    open_cartoon(&face, large, needed - 4);
+    need(pantin_face_play(&face, clip, length) == PANTIN_NO_ROOM && face.needed == needed, "no room for a key clip", path);
+    free(clip);
+}
+
 int main(int argc, char **argv) {
-    if (argc != 2) return 2;
+    if (argc != 3) return 2;
     closed_faces();
     refusals();
     transitions();
@@ -291,5 +310,6 @@ int main(int argc, char **argv) {
     mouths();
     divisions();
     wireframe(argv[1]);
+    key_clips(argv[2]);
     return 0;
 }

@@ -152,6 +152,16 @@ static void resize(lv_pantin_t *p) {
     draw(p);
 }
 
+/* Shows another source in the picture that is there: a heap in parts may have no room for a second one. */
+static void show(lv_pantin_t *p) {
+    if (p->picture && set_size(p, p->picture->header.w, p->picture->header.h) == PANTIN_OK) {
+        draw(p);
+    } else {
+        release(p);
+    }
+    resize(p);
+}
+
 /* ---- The object ---- */
 
 /* Opens a model in memory of its own: NULL if it is damaged or there is no memory. */
@@ -284,8 +294,7 @@ lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *bytes, uint32_t leng
         p->body = body;
     }
     if (body) {
-        release(p);
-        resize(p);
+        show(p);
         return LV_RESULT_OK;
     }
 #endif
@@ -294,8 +303,7 @@ lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *bytes, uint32_t leng
         return LV_RESULT_INVALID;
     }
     set_face(p, &face, memory);
-    release(p);
-    resize(p);
+    show(p);
     return LV_RESULT_OK;
 }
 

@@ -134,6 +134,7 @@ static void speech(void) {
 
 static void refused(lv_display_t *display) {
     static uint8_t damaged[sizeof pantin_cartoon];
+    lv_draw_buf_t *picture;
     lv_obj_t *face = lv_pantin_create(lv_screen_active());
     lv_obj_set_size(face, SIZE, SIZE);
     lv_test_wait(100);
@@ -142,7 +143,10 @@ static void refused(lv_display_t *display) {
     NEED(lv_pantin_set_src(face, damaged, sizeof damaged) == LV_RESULT_INVALID);
     NEED(lv_pantin_set_src(face, pantin_cartoon, 100) == LV_RESULT_INVALID);
     NEED(lv_pantin_set_emote(face, "nobody") == LV_RESULT_INVALID && lv_pantin_set_emote(face, NULL) == LV_RESULT_INVALID);
+    /* Another face is shown in the picture that is there: there may be no memory for a second one. */
+    picture = lv_canvas_get_draw_buf(face);
     NEED(lv_pantin_set_src(face, pantin_cartoon, sizeof pantin_cartoon) == LV_RESULT_OK);
+    NEED(picture && lv_canvas_get_draw_buf(face) == picture);
     NEED(lv_pantin_set_emote(face, "happy") == LV_RESULT_OK);
     /* Sizes without a picture, and a size for which there is no memory. */
     lv_obj_set_size(face, 0, 0);

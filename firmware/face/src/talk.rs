@@ -217,16 +217,20 @@ impl Talk {
         self.waiting.push_back((viseme, at)).map_err(|_| VisemeError::Full)
     }
 
-    /// Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms.
+    /// Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. The samples of
+    /// a time are pushed before its step, which may be longer.
     pub fn step(&mut self, ms: u16) {
         self.rest += u32::from(ms);
+        // The time of a step before which there was sound is the sound's own.
+        let most = if self.silent_ms == 0 { SILENT_MS - TICK_MS } else { SILENT_MS };
         while self.rest >= TICK_MS {
             self.rest -= TICK_MS;
-            self.tick();
+            self.tick(most);
         }
     }
 
-    fn tick(&mut self) {
+    /// `most_silent_ms` is what this time can add up to.
+    fn tick(&mut self, most_silent_ms: u32) {
         let timed = self.timed();
         self.now = self.now.wrapping_add(TICK_MS);
         while let Some(&(viseme, at)) = self.waiting.front() {
@@ -236,7 +240,7 @@ impl Talk {
             self.viseme = viseme;
             self.waiting.pop_front();
         }
-        self.silent_ms = if timed { SILENT_MS } else { SILENT_MS.min(self.silent_ms + TICK_MS) };
+        self.silent_ms = if timed { SILENT_MS } else { self.silent_ms.max(most_silent_ms.min(self.silent_ms + TICK_MS)) };
         if self.silent_ms < SILENT_MS {
             return;
         }

@@ -238,6 +238,22 @@ fn the_mouth_closes_when_sound_stops_coming() {
     assert_eq!(talk.weights(), &[0; 14]);
 }
 
+/// Slow displays push the sound of a whole picture, then step by its time.
+#[test]
+fn sound_of_a_long_time_opens_the_mouth() {
+    let mut voice = Voice::new(16_000);
+    voice.silence(400);
+    voice.add(1200, 120.0, AA, 3000.0);
+    let mut talk = Talk::new(16_000).unwrap();
+    for part in voice.samples.chunks(3200) {
+        talk.push(part);
+        talk.step(200);
+    }
+    assert!(i32::from(talk.weights()[9]) > FULL_WEIGHT / 2, "{:?}", talk.weights());
+    talk.step(200);
+    assert_eq!(talk.weights()[9], 0);
+}
+
 #[test]
 fn wrong_visemes_are_refused_and_change_nothing() {
     let mut talk = Talk::new(16_000).unwrap();

@@ -9,7 +9,7 @@ use harness::vectors::{self, faces};
 use pantin_face::EMOTES;
 use tempfile::TempDir;
 
-use super::{compile, host_program, output};
+use super::{KEYS, compile, host_program, host_program_with, output};
 
 /// Bytes of code that faces may take, without the decoder.
 pub const MOST_CODE: u64 = 20 * 1024;
@@ -86,8 +86,8 @@ pub fn same(what: &str, rust: &str, c: &str) -> Result<()> {
 /// Runs the program that tests errors, transitions, eyes and divisions into rows.
 pub fn rules(folder: &TempDir) -> Result<()> {
     for compiler in ["gcc", "clang"] {
-        let mut command = Command::new(host_program(folder, compiler, "face_rules")?);
-        command.arg(model("face"));
+        let mut command = Command::new(host_program_with(folder, compiler, "face_rules", &[KEYS])?);
+        command.arg(model("face")).arg(vectors::keyed::folder().join("emotes-loving.ptn"));
         output(command)?;
     }
     Ok(())
