@@ -7,7 +7,7 @@ import { findJoint } from "@pantin/decoder/turns";
 import * as minTurns from "@pantin/decoder/turns/min";
 import { PantinPlayer } from "@pantin/player";
 import { PantinPose, toAnimationClip } from "@pantin/three";
-import { AnimationMixer, Bone, Float32BufferAttribute, BufferGeometry, Group, Mesh, Skeleton, Vector3 } from "three";
+import { AnimationMixer, Bone, Euler, Float32BufferAttribute, BufferGeometry, Group, Mesh, Quaternion, Skeleton, Vector3 } from "three";
 
 const bytes = readFileSync(process.argv[2]);
 const clip = openClip(bytes);
@@ -59,6 +59,35 @@ for (let frame = 0; frame < clip.frames; frame += 7) {
 const size = Math.max(...clip.joints.map(({ offset }) => Math.hypot(...offset)));
 assert.ok(farthest < 1e-4 * size, `a joint is ${farthest} away, where a bone has ${size}`);
 assert.throws(() => new PantinPose(clip, new Group()), /map/);
+
+// On bones of half the length, with axes of their own and other rest directions of the limbs below a joint, the limbs point where those of the clip do.
+const upright = new Quaternion().setFromUnitVectors(new Vector3(...clip.rig.up), new Vector3(0, 1, 0));
+const other = figure(armature.clone(false));
+const rests = [];
+clip.joints.forEach(({ parent, offset }, index) => {
+  const bone = other.bones[index];
+  rests[index] = new Vector3(...offset).applyQuaternion(upright).multiplyScalar(0.5).applyAxisAngle(new Vector3(0, 0, 1), index % 3 ? 0 : 0.5).add(rests[parent] ?? new Vector3());
+  bone.parent.updateWorldMatrix(true, false);
+  const above = bone.parent.getWorldQuaternion(new Quaternion()).invert();
+  bone.position.copy(bone.parent.worldToLocal(rests[index].clone()));
+  bone.quaternion.copy(above.multiply(new Quaternion().setFromEuler(new Euler(index, 2 * index, 3 * index))));
+});
+const retargeted = new PantinPose(clip, other.root, { map, retarget: true });
+let [greatest, limbs] = [0, 0];
+for (let frame = 0; frame < clip.frames; frame += 11) {
+  retargeted.player.seek(frame);
+  retargeted.apply();
+  const [world, now] = [player.seek(frame).world(), places(other)];
+  clip.joints.forEach(({ parent, isEnd }, joint) => {
+    const siblings = clip.joints.filter((one) => one.parent === parent && !one.isEnd).length;
+    if (isEnd || siblings !== 1 || !(clip.joints[parent]?.parent >= 0)) return;
+    const way = new Vector3().fromArray(world, 3 * joint).sub(new Vector3().fromArray(world, 3 * parent)).applyQuaternion(upright);
+    if (way.length() < 1e-3 * size) return;
+    greatest = Math.max(greatest, way.angleTo(now[joint].clone().sub(now[parent])));
+    limbs += 1;
+  });
+}
+assert.ok(limbs > 50 && greatest < 1e-5, `${limbs} limbs, ${greatest} radians`);
 assert.ok(new PantinPose(clip, new Skeleton(plain.bones), { map }).joints.length > 10);
 
 // Scalars move morph targets; frames of 100 characters are decoded and posed.

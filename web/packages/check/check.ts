@@ -20,7 +20,7 @@ export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
   // @ts-expect-error There is no such order.
   knee.euler("XYX");
   new AnimationMixer(root).clipAction(toAnimationClip(clip, root, { name: "walk", map: { Hips: "hips", Toe: null } })).play();
-  const pose = new PantinPose(clip, new Skeleton([]), { morphs: (name) => name.toLowerCase(), scale: 0.01 }).update(0.1);
+  const pose = new PantinPose(clip, new Skeleton([]), { morphs: (name) => name.toLowerCase(), scale: 0.01, retarget: true, inPlace: true }).update(0.1);
   const element: PantinPlayer = document.createElement("pantin-player");
   element.src = "walk.ptn";
   element.addEventListener("heard", ({ detail }) => console.log((detail satisfies Heard).name));

@@ -1,5 +1,5 @@
 import type { Clip, Joint, Player } from "@pantin/decoder";
-import type { AnimationClip, Object3D, Skeleton } from "three";
+import type { AnimationClip, Object3D, Skeleton, Vector3 } from "three";
 
 /** A node, its name, or null for a joint that is to be left out. */
 export type Target = Object3D | string | null | undefined;
@@ -12,6 +12,13 @@ export interface Options {
   morphs?: Readonly<Record<string, string | null>> | ((name: string) => string | null | undefined);
   /** Factor of the clip's translations, where its unit is not that of the scene. */
   scale?: number;
+  /**
+   * Whether the bones have other axes, another rest pose or other proportions than the clip's joints. Limbs then point where those of the clip do, and the root's
+   * way is scaled by the lengths of the bones. The bones have to stand in their rest pose when the object is made.
+   */
+  retarget?: boolean;
+  /** With `retarget`: whether the root stays above its place at rest. `PantinPose.retargeting.travel` says where the clip has it. */
+  inPlace?: boolean;
 }
 
 /** A character that shows the frames of a clip. */
@@ -24,6 +31,8 @@ export declare class PantinPose {
   readonly time: number;
   /** Names of the clip that have no node or morph target. */
   readonly missing: { readonly joints: readonly string[]; readonly scalars: readonly string[] };
+  /** With `retarget`: the factor from lengths of the clip to those of the scene, and where the clip has the root, in the unit of the scene. */
+  readonly retargeting?: { readonly scale: number; readonly travel: Vector3 };
   /** Goes on by a number of seconds. A looped clip repeats; another one stays at its last frame. */
   update(seconds: number): this;
   /** Shows the frame at a time in seconds. */

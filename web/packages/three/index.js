@@ -1,5 +1,6 @@
 // Puts the poses of Pantin clips on three.js objects: as an AnimationClip, or live.
 import { AnimationClip, InterpolateDiscrete, Matrix4, NumberKeyframeTrack, PropertyBinding, Quaternion, QuaternionKeyframeTrack, Vector3, VectorKeyframeTrack } from "three";
+import { Retargeting } from "./retarget.js";
 
 const IDENTITY = new Matrix4();
 const plain = (name) => PropertyBinding.sanitizeNodeName(name).toLowerCase();
@@ -91,6 +92,11 @@ export class PantinPose {
     this.joints = joints.bound;
     this.scalars = scalars.bound;
     this.missing = { joints: joints.missing, scalars: scalars.missing };
+    if (options.retarget && this.joints.length) {
+      this.retargeting = new Retargeting(clip, this.joints, root.bones ? null : root, options);
+      // Of the bones, the first alone moves.
+      this.retargeting.entries.forEach(({ parent }, index) => (this.joints[index].moves = !parent));
+    }
     this.time = 0;
     if (!this.joints.length && !this.scalars.length) throw new Error("no joint and no scalar of the clip has a node or a morph target of its name: give a map");
     this.apply();
@@ -115,7 +121,8 @@ export class PantinPose {
   apply() {
     const { player } = this;
     const [rotation, translation] = [this.#rotation, this.#translation];
-    for (const { joint, node, moves, inverse, unturn, scale } of this.joints) {
+    this.retargeting?.apply(player);
+    for (const { joint, node, moves, inverse, unturn, scale } of this.retargeting ? [] : this.joints) {
       player.rotation(joint, rotation);
       if (unturn) node.quaternion.copy(unturn).multiply(this.#turn.fromArray(rotation));
       else node.quaternion.set(rotation[0], rotation[1], rotation[2], rotation[3]);
