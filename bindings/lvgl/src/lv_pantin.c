@@ -277,7 +277,7 @@ static bool set_up(lv_pantin_t *p, lv_pantin_body_t *body) {
 lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *bytes, uint32_t length) {
     lv_pantin_t *p = (lv_pantin_t *)obj;
     pantin_face face;
-    uint32_t *memory = open_model(&face, bytes, length);
+    uint32_t *memory = bytes ? open_model(&face, bytes, length) : open_model(&face, pantin_cartoon, sizeof pantin_cartoon);
 #if LV_PANTIN_BODY
     lv_pantin_body_t *body = memory ? NULL : lv_pantin_body_open(bytes, length);
     if (body && !set_up(p, body)) {

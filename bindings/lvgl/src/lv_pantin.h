@@ -57,9 +57,10 @@ extern const lv_obj_class_t lv_pantin_class;
  * The face is the cartoon with our 23 emotes, at rest, which blinks, on a background of its own: black. NULL if LVGL's memory is used up. */
 lv_obj_t *lv_pantin_create(lv_obj_t *parent);
 
-/* Shows another face, a model that `pantin face model` writes, or, with LV_PANTIN_BODY, a body: a clip (.ptn), a bank (.ptb), whose first clip plays,
- * or a bank with a state machine. The bytes are not copied. LV_RESULT_INVALID if they are damaged or memory is used up: the widget stays as it
- * is. Functions for faces do nothing while a body is shown, and those for bodies nothing while a face is; they return LV_RESULT_INVALID. */
+/* Shows another face, a model that `pantin face model` writes, NULL for the cartoon, or, with LV_PANTIN_BODY, a body: a clip (.ptn), a bank (.ptb),
+ * whose first clip plays, or a bank with a state machine. The bytes are not copied. LV_RESULT_INVALID if they are damaged or memory is used up: the
+ * widget stays as it is. Functions for faces do nothing while a body is shown, and those for bodies nothing while a face is; they return
+ * LV_RESULT_INVALID. */
 lv_result_t lv_pantin_set_src(lv_obj_t *obj, const uint8_t *bytes, uint32_t length);
 
 /* Lends other emotes, which are not copied. */

@@ -146,6 +146,7 @@ static void refused(lv_display_t *display) {
     /* Another face is shown in the picture that is there: there may be no memory for a second one. */
     picture = lv_canvas_get_draw_buf(face);
     NEED(lv_pantin_set_src(face, pantin_cartoon, sizeof pantin_cartoon) == LV_RESULT_OK);
+    NEED(lv_pantin_set_src(face, NULL, 0) == LV_RESULT_OK);
     NEED(picture && lv_canvas_get_draw_buf(face) == picture);
     NEED(lv_pantin_set_emote(face, "happy") == LV_RESULT_OK);
     /* Sizes without a picture, and a size for which there is no memory. */
