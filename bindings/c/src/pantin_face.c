@@ -1494,8 +1494,11 @@ pantin_result pantin_face_play(pantin_face *face, const uint8_t *clip, uint32_t 
     channels = opened.rig.channels;
     count = bind(&face->model, &opened.rig, NULL);
     if (count == 0) return PANTIN_NOT_FOUND;
-    /* A key clip has a state for each key. */
-    moving = opened.states > channels ? opened.states : channels;
+    moving = channels;
+#ifdef PANTIN_KEYS
+    /* A key clip has states beside its channels. */
+    if (opened.states > channels) moving = opened.states;
+#endif
     i = channels * (uint32_t)sizeof(int32_t) + moving * (uint32_t)sizeof(pantin_channel) + count * (uint32_t)sizeof(pantin_face_drive);
     if (count > 0xffff || i > face->rest_bytes) {
         face->needed = lend(face, NULL) + i;
