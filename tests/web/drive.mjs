@@ -637,8 +637,8 @@ const cases = {
         return window.seen(player).hash;
       };
       const wear = (look) => (look ? player.setAttribute("character-look", look) : player.removeAttribute("character-look"));
-      const has = (color) => {
-        const { data } = player.context.getImageData(0, 0, player.canvas.width, player.canvas.height);
+      const has = (color, { canvas, context } = player) => {
+        const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
         for (let at = 0; at < data.length; at += 4) if (color.every((value, index) => Math.abs(value - data[at + index]) < 3)) return true;
         return false;
       };
@@ -659,6 +659,17 @@ const cases = {
       document.body.prepend(other);
       await other.load("clips/walk.ptn");
       const [first, ranger] = [window.seen(other).hash, (await other.picture(), window.seen(other).hash)];
+      // A character that is steered has it as a clip does, and lines again after it.
+      other.setAttribute("character-look", "clips/cat.look");
+      await other.load("clips/character.ptb");
+      const ears = [];
+      for (const look of ["solid", "lines", "solid"]) {
+        other.look = look;
+        await other.picture();
+        other.hold("go");
+        other.advance(2);
+        ears.push(has([0xff, 0xf0, 0xdc], other));
+      }
       other.remove();
       const told = [];
       player.addEventListener("error", ({ detail }) => told.push(detail));
@@ -677,9 +688,10 @@ const cases = {
       await shown(plain);
       const { trouble } = player;
       await new Promise((go) => setTimeout(go, 50));
-      return { counted, muzzle, isSame: again === cat, isPlain: none === plain, isThere: first === ranger, troubles, told: told.length, trouble, status: player.shadowRoot.querySelector("p").textContent };
+      return { counted, muzzle, ears, isSame: again === cat, isPlain: none === plain, isThere: first === ranger, troubles, told: told.length, trouble, status: player.shadowRoot.querySelector("p").textContent };
     }, args);
     page.troubles = page.troubles.filter((trouble) => !/404/.test(trouble));
+    assert.deepEqual(outcome.ears, [true, false, true]);
     assert.deepEqual([outcome.counted, outcome.muzzle, outcome.isSame, outcome.isPlain, outcome.isThere], [0, true, true, true, true]);
     assert.equal(await fetched(), 1);
     const words = [/^clips\/none\.look: 404$/, /^clips\/walk\.ptn: line 1: expected one of radius, outline, colour, attach$/, /^extra\/wrong\.look: line 3: expected a whole number from 1 to 200$/, /^http:\/\/\[: /];

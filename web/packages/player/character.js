@@ -63,13 +63,16 @@ export function steer(bank, player, keys, feetOf) {
     const inner = figure.inner();
     figure.place(animator.pose, standOf(animator.placement, axis, inner[SHIFT], inner[TURNS], maths));
   };
+  // `look` sets the figure up in another look than lines.
   const aim = (...wanted) => {
     const { clip } = animator.track;
-    view = wanted;
+    const [picture, look] = (view = wanted);
     if (!figure || !isAlike(form, clip)) figure = figureOf(clip, animator.pose);
     form = clip;
     poses ??= [...character.poses()];
-    figure.aim(...view, (visit) => poses.forEach(visit));
+    const visit = (pose) => poses.forEach(pose);
+    if (look) look(clip, figure, picture, visit, poses, player);
+    else figure.aim(...picture, visit);
     stand();
   };
   player.states = states;
@@ -81,6 +84,7 @@ export function steer(bank, player, keys, feetOf) {
   return {
     aim,
     each: (stroke) => figure?.each(stroke),
+    get solid() { return figure?.solid; },
     facts: {
       frames: 1, playable: 1, frame: 0, frameTime: initial.frameTimeNs, looped: 0, channels: rig.channels, moving: 0, rigBytes: 0, motionBytes: 0, joints: rig.joints.length,
       scalars: rig.scalars.length,

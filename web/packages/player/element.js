@@ -487,15 +487,15 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.#aside = way * 8 * (way < 0 ? broad - small : 2 * width - small - broad);
     const axis = AXES.indexOf(this.up);
     const view = [isFace && isWide ? width - side : broad, height, orbit, tilt, this.fit !== "whole", axis < 0 ? undefined : axis];
-    if (actor) actor.aim(...view);
+    const look = this.#looks[this.look]?.aim;
+    if (actor) (this.#figure = actor).aim(view, look);
     else if (hasBody) {
       const player = this.#player;
       const { frame } = player;
       const figure = (this.#figure ??= figureOf(clip, player.seek(0).raw));
       const visit = visitor(clip, this.#playable, (frame) => player.seek(frame).raw);
-      figure.solid = this.#looks[this.look]?.solidOf?.(clip, figure, figure.solid, this);
-      figure.aim(...view, visit, figure.solid?.cover);
-      figure.solid?.learn(visit, this.#playable);
+      if (look) look(clip, figure, view, visit, this.#playable, this);
+      else figure.aim(...view, visit);
       player.seek(frame);
     }
     face?.aim(side, hasBody ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
@@ -680,7 +680,6 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const aside = this.#aside;
     const body = aside ? (x, y, u, v, shade, part, width) => stroke(x + aside, y, part === 4 ? u : u + aside, v, shade, part, width) : stroke;
     if (!this.playable) return;
-    if (this.#actor) return this.#actor.each(body);
     if (hasBody) this.#figure?.each(body);
     this.#face?.each(this.#player.raw, stroke);
   }

@@ -310,6 +310,13 @@ export function solidOf(clip, figure, known, player) {
   return solid;
 }
 
+// Sets a figure up in this look. `poses` is another value where `visit` passes other poses.
+export function aim(clip, figure, view, visit, poses, player) {
+  const solid = (figure.solid = solidOf(clip, figure, figure.solid, player));
+  figure.aim(...view, visit, solid?.cover);
+  solid?.learn(visit, poses);
+}
+
 function volumeOf(clip, figure) {
   const { bones, crown, size } = innerOf(figure);
   const person = personOf(clip, innerOf(figure));
