@@ -15,6 +15,7 @@ mod readme;
 mod solid;
 mod talk;
 mod turns;
+mod tutorial;
 mod uno;
 
 use std::path::{Path, PathBuf};
@@ -221,6 +222,7 @@ impl Bindings {
         steps.run("memory of faces", || face::memory(&folder));
         steps.run("lips for speech against the crate's", || talk::weights(&folder));
         steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
+        steps.run("the tutorial of a talking face", || tutorial::talking_face(&folder));
         steps.run("animators against the crate's", || animator::transitions(&folder));
         steps.run("state machines against the crate's", || animator::machines(&folder));
         steps.run("feet of characters against the crate's", || animator::feet(&folder));
