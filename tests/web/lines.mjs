@@ -109,7 +109,7 @@ pass(0);
 for (const [width, height] of SIZES) {
   for (const [orbit, tilt, isFollowing, axis] of VIEWS) {
     assert.equal(wasm.aim(slot, width, height, orbit, tilt, +!isFollowing + 2 * (axis === undefined ? 0 : axis + 1)), 0);
-    actor.aim(width, height, orbit, tilt, isFollowing, axis);
+    actor.aim([width, height, orbit, tilt, isFollowing, axis]);
     for (let picture = 0; picture < 60; picture++, turn++) {
       const act = (name, what) => (wasm.input(slot, player.inputs.indexOf(name), what), actor.input(name, what));
       if (turn % 400 === 0) act("go", 1);
