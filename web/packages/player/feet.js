@@ -246,7 +246,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
           return axis < 2 || isLevel ? [d, elapsed ? narrow(trunc((((d - ease[0]) | 0) * RELEASE) / elapsed)) : 0, 0] : ease;
         });
         isLevel &&= !isCalm;
-        if (farther(way) > length() >> 2) release(true, length());
+        if (farther(way) > length() >> 2) release(true, length() >> 2);
       } else if (eases.every(([, , since], axis) => since === wholeOf(axis))) {
         steps = false;
         lift = 0;
