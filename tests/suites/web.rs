@@ -436,12 +436,9 @@ fn clips_that_are_no_good_are_told_and_played_as_far_as_they_go() {
         let [error, said] = ["error", "said"].map(|field| outcome[field].as_str().unwrap());
         assert!(error.contains(words) && said == error, "{clip}: {error:?}, on the page {said:?}");
     }
-    // Of a connection that ends, a browser that is busy may pass on less than what had come.
-    let most = [0, 1].map(|clip| &outcomes[clip]["playable"]);
-    assert!(most.iter().all(|playable| playable.as_u64().unwrap() > 30), "{most:?}");
     for partly in [0, 1, 7].map(|clip| &outcomes[clip]) {
         let [playable, frames] = ["playable", "frames"].map(|field| partly[field].as_u64().unwrap());
-        assert!(playable < frames, "{partly}");
+        assert!(playable > frames / 4 && playable < frames, "{partly}");
         assert!(partly["said"].as_str().unwrap().contains(&format!("{playable} of {frames} frames")), "{partly}");
     }
 }

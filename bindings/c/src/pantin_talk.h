@@ -73,8 +73,8 @@ void pantin_talk_push(pantin_talk *talk, const int16_t *samples, size_t count);
  * PANTIN_NO_ROOM if PANTIN_TALK_WAITING visemes wait already. */
 pantin_result pantin_talk_viseme(pantin_talk *talk, uint8_t viseme, uint32_t at);
 
-/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. The samples of a time are pushed
- * before its step, which may be longer. */
+/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. The samples of a
+ * time are pushed before its step, which may be longer. */
 void pantin_talk_step(pantin_talk *talk, uint16_t ms);
 
 #ifdef __cplusplus

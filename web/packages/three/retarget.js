@@ -24,8 +24,8 @@ const turnOf = (matrix) => {
 
 /** Puts frames on the bones of another figure. `bound` has joints and nodes, parents first; the figure stands in its rest pose. */
 export class Retargeting {
-  #places = new Float64Array();
-  #turns = new Float64Array();
+  #places;
+  #turns;
   #now = new Quaternion();
   #place = new Vector3();
 

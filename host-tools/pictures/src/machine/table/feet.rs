@@ -14,7 +14,7 @@ use pantin_convert::import::text::quoted;
 
 /// The longest that a transition waits to begin, in seconds, where the file states none.
 const WITHIN: f64 = 0.5;
-/// The greatest change of velocity that looks like a body's, in cm a second, a second: beyond it shoes slide on a floor.
+/// The greatest acceleration that looks like a body's, in cm/s^2: shoes slide on a floor beyond it.
 const MOST_ACCELERATION: f64 = 700.0;
 
 impl Maker<'_, '_> {
