@@ -153,6 +153,17 @@ fn the_cartoon_fills_its_shapes_and_moves_them_by_the_same_names() {
 }
 
 #[test]
+fn closed_lips_of_the_cartoon_hide_its_tongue_however_the_head_nods() {
+    let tongue = |named: &[(&str, &str)]| drawn_of(CARTOON, named).iter().flatten().filter(|&&shade| shade == 150).count();
+    assert!(tongue(&[("open_mouth", "0.6")]) > 0);
+    for nod in ["0", "0.3", "0.6", "-0.5"] {
+        for lips in ["frown", "smile", "lip_press"] {
+            assert_eq!(tongue(&[(lips, "1"), ("nod", nod)]), 0, "{lips} at a nod of {nod}");
+        }
+    }
+}
+
+#[test]
 fn the_picture_keeps_room_for_an_open_jaw() {
     let model = Model::new_checked(MODEL).unwrap();
     for (width, height) in [(128, 64), (240, 240), (64, 64), (128, 160)] {

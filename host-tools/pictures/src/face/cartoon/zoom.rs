@@ -24,6 +24,12 @@ pub(super) enum Part {
 const MIDDLES: [(Part, Vector); 3] =
     [(Part::Eye, [32.0, 0.0, 62.0]), (Part::Brow, [34.0, 25.0, 82.0]), (Part::Mouth, [0.0, -67.0, 88.0])];
 
+/// The depth on the head, in mm, at which its lips meet in the middle.
+const LIPS: f64 = 94.0;
+
+/// How far a tongue rises on the head, in mm, so that it shows behind the lower lip of an open mouth.
+const TONGUE_UP: f64 = 4.0;
+
 /// Whether a rotation about this centre is one of the eyeball.
 pub(super) fn is_eyeball(centre: Vector) -> bool {
     distance(centre, MIDDLES[0].1) < 1e-6
@@ -71,10 +77,13 @@ impl Enlarged<'_> {
         zoom.map_or((1.0, [0.0; 3]), |zoom| (zoom.factor, zoom.offset()))
     }
 
-    /// The new place of a point.
+    /// The new place of a point. A tongue lies in the plane of the lips, which clip it: deeper, it would show above them when the head nods.
     pub fn place(&self, index: usize) -> Vector {
         let (factor, offset) = self.factor_and_offset(index);
-        plus(self.head.points[index].map(|x| x * factor), offset, 1.0)
+        let [aside, up, depth] = self.head.points[index];
+        let is_tongue = self.head.label(index).trim_start_matches('-').starts_with("tongue");
+        let place = if is_tongue { [aside, up + TONGUE_UP, LIPS] } else { [aside, up, depth] };
+        plus(place.map(|x| x * factor), offset, 1.0)
     }
 
     /// The offset of the mouth.
