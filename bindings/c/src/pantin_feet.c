@@ -33,7 +33,10 @@ static int64_t wide_size(int64_t x) { return x < 0 ? wide_difference(0, x) : x; 
 static int64_t wide_square(int64_t x) { return (int64_t)((uint64_t)x * (uint64_t)x); }
 static int64_t least(int64_t a, int64_t b) { return a < b ? a : b; }
 static int64_t most(int64_t a, int64_t b) { return a > b ? a : b; }
-static int32_t narrow(int64_t x) { return (int32_t)most(least(x, 0x7fffffffL), -0x7fffffffL); }
+static int32_t narrow(int64_t x) {
+    int32_t low = (int32_t)(uint32_t)(uint64_t)x;
+    return low == x && low >= -0x7fffffffL ? low : x < 0 ? -0x7fffffffL : 0x7fffffffL;
+}
 
 /* value / 2^shift, cut off at the range. */
 static int32_t shifted(int32_t value, int32_t shift) {
