@@ -47,6 +47,7 @@ template <uint16_t ChannelCount> class PantinPlayer {
     /* Opens a clip or a bank, and shows frame 0 (of a bank: of its first clip). Returns false if it is damaged, has too many channels, or is a key clip
      * (`pantin convert --segments` writes another one) and PANTIN_KEYS is not defined for the whole build. */
     bool begin(const uint8_t *bytes, uint32_t length) {
+        ready = false;
         pantin_source *source = content.open(bytes, length);
         isBank = pantin_open_bank(&bank, source) == PANTIN_OK;
         if (!isBank) return pantin_open(&clip, source, NULL) == PANTIN_OK && start();
@@ -126,8 +127,8 @@ template <uint16_t ChannelCount> class PantinPlayer {
         return isBank && pantin_open_named(&clip, &bank, name) == PANTIN_OK && start();
     }
 
-    /* Starts the clip again. */
-    bool play() { return start(); }
+    /* Starts the clip again. Returns false if none was opened. */
+    bool play() { return ready && start(); }
 
     /* Finds a joint by name: once, in setup(). The result is false if the rig has no such joint. It is valid for all clips of a bank. */
     PantinJoint find(const char *name) {
@@ -176,8 +177,9 @@ template <uint16_t ChannelCount> class PantinPlayer {
         return true;
     }
 
-    uint32_t frame() const { return player.frame; }
-    uint32_t frames() const { return clip.frames; }
+    /* The frame that is shown, and their number: 0 if no clip was opened. */
+    uint32_t frame() const { return ready ? player.frame : 0; }
+    uint32_t frames() const { return ready ? clip.frames : 0; }
 
     /* For PantinSolid: the player, NULL before begin(); and the pose that is shown. */
     pantin_player *playing() { return ready ? &player : NULL; }
@@ -204,7 +206,7 @@ template <uint16_t ChannelCount> class PantinPlayer {
     uint64_t due;
     uint32_t last, passed; /* the time of the last update; frames that it reached */
     uint16_t percent = 100;
-    bool isBank, ready = false, running, fresh, stopped = false, ended = false, repeats = true;
+    bool isBank = false, ready = false, running = false, fresh = false, stopped = false, ended = false, repeats = true;
 };
 
 /* Draws clips as a figure of at most BoneCount bones, from rigs of at most JointCount joints. */
@@ -305,7 +307,7 @@ template <uint16_t ChannelCount, uint16_t BoneCount, uint16_t JointCount> class 
     pantin_slot slots[PANTIN_FIGURE_SLOTS];
     pantin_joint_info scratch[JointCount];
     uint16_t columns, rows;
-    bool drawable;
+    bool drawable = false;
 };
 
 #endif

@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include "hero.h"
 #include "run.h"
@@ -27,6 +28,35 @@ static void need(bool held, const char *what, int line) {
     if (held) return;
     std::printf("line %d failed: %s\n", line, what);
     std::exit(1);
+}
+
+// An object in memory that holds other bytes than 0, as one on the heap does.
+template <class Object> static Object &inUsedMemory() {
+    alignas(Object) static unsigned char memory[sizeof(Object)];
+    std::memset(memory, 0xa5, sizeof(Object));
+    return *new (memory) Object;
+}
+
+// What is called too early does nothing, and says so.
+static void beforeBegin() {
+    static const int16_t samples[160] = {0};
+    PantinFace &face = inUsedMemory<PantinFace>();
+    face.sound(samples, 160);
+    NEED(!face.emote("happy") && !face.emotes(pantin_emotes, PANTIN_EMOTES) && !face.look(0, 0) && !face.weight("joy", 1) && !face.viseme(1, 0));
+    NEED(!face.live(1) && !face.palette(NULL) && !face.update(0) && !face.rows(PANTIN_RGB565, NULL, 480, 0, 1));
+    NEED(face.soundRate(8000) && face.begin(pantin_cartoon, sizeof pantin_cartoon, 64, 48) && face.talk.rate == 8000);
+    PantinPlayer<CLIP_RUN_CHANNELS> &player = inUsedMemory<PantinPlayer<CLIP_RUN_CHANNELS>>();
+    float value = 7, degrees[3];
+    PantinJoint joint = player.find("hips");
+    NEED(!player.update(0) && !player.play() && !player.play("run") && !player.seek(0) && !player.event("left_foot_down") && !player.finished());
+    NEED(player.frame() == 0 && player.frames() == 0 && !joint && !player.euler(joint, PANTIN_XYZ, degrees) && !player.scalar("joy", value) && value == 7);
+    // Bytes that do not open leave no clip of before.
+    NEED(player.begin(CLIP_RUN, CLIP_RUN_LEN) && !player.begin(CLIP_RUN, 20) && !player.update(0) && !player.play() && player.frames() == 0);
+    PantinFigure<CLIP_RUN_CHANNELS, 40, 40> &figure = inUsedMemory<PantinFigure<CLIP_RUN_CHANNELS, 40, 40>>();
+    NEED(!figure.view(30, 10) && !figure.play() && !figure.play("run"));
+    PantinCharacter<BANK_HERO_CHANNELS> &hero = inUsedMemory<PantinCharacter<BANK_HERO_CHANNELS>>();
+    NEED(!hero.update(0) && !hero.input("go") && !hero.press(PantinInput(0)) && !hero.in("idle") && !hero.entered() && !hero.playing());
+    hero.home();
 }
 
 static PantinPlayer<CLIP_RUN_CHANNELS> player;
@@ -233,6 +263,7 @@ static void bodies() {
 }
 
 int main() {
+    beforeBegin();
     clips();
     faces();
     characters();
