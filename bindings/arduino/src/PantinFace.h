@@ -9,7 +9,7 @@
  *     face.emote("happy");
  *     if (face.update(millis())) face.draw(sprite);
  *
- * For 32-bit processors: an ESP32, an ESP8266, an RP2040, a SAMD. All memory is in the object, 2.9 KB. */
+ * For 32-bit processors: an ESP32, an ESP8266, an RP2040, a SAMD. All memory is in the object, 3 KB. */
 #ifndef PANTIN_FACE_ARDUINO_H
 #define PANTIN_FACE_ARDUINO_H
 
@@ -21,10 +21,11 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
   public:
     /* Opens a model for a display of `width` times `height` pixels. Returns false if it is damaged or has more vertices. */
     bool begin(const uint8_t *model, uint32_t length, uint16_t width, uint16_t height) {
+        uint32_t rate = talk.rate ? talk.rate : 16000;
         ready = pantin_face_open(&face, model, length, memory, sizeof memory) == PANTIN_OK && pantin_face_size(&face, width, height) == PANTIN_OK;
         running = false;
         if (ready) pantin_face_live(&face, 1);
-        return ready && pantin_talk_open(&talk, 16000) == PANTIN_OK;
+        return ready && pantin_talk_open(&talk, rate) == PANTIN_OK;
     }
 
     /* Lends a list of emotes. */
@@ -49,7 +50,8 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
     /* Sets the colours of 16 brightnesses, the background first, in RGB565. The array is not copied. */
     bool palette(const uint16_t *colors) { return pantin_face_palette(&face, colors) == PANTIN_OK; }
 
-    /* Sets the rate of the sound that follows, 8000 to 48000 Hz: 16000 without a call. Returns false for another. */
+    /* Sets the rate of the sound that follows, 8000 to 48000 Hz: 16000 without a call. Returns false for another. With a rate that is not the sound's own
+     * the lips move, but wrongly. */
     bool soundRate(uint32_t rate) {
         pantin_talk other;
         if (pantin_talk_open(&other, rate) != PANTIN_OK) return false;
@@ -57,7 +59,7 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
         return true;
     }
 
-    /* Moves the lips by sound as it is played or recorded. Parts of up to 30 ms give smooth lips. */
+    /* Moves the lips by sound: before each update(), all samples that were played or recorded since the last one. */
     void sound(const int16_t *samples, size_t count) { pantin_talk_push(&talk, samples, count); }
 
     /* Shows a viseme of MPEG-4, 1 to 14, or none, 0, `ms` milliseconds from now until the next one's time; visemes win over sound. Returns false for another
@@ -75,6 +77,7 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
         uint16_t ms = static_cast<uint16_t>(elapsed > 1000 ? 33 : elapsed);
         pantin_talk_step(&talk, ms);
         for (uint8_t i = 1; i <= PANTIN_TALK_VISEMES; i++) pantin_face_viseme(&face, i, talk.weights[i - 1]);
+        pantin_face_speaking(&face, talk.speaking);
         return pantin_face_step(&face, ms) == PANTIN_OK;
     }
 
@@ -94,8 +97,8 @@ template <uint16_t VertexCount = 97, uint16_t ChannelCount = 12> class PantinFac
         return ready && pantin_face_draw(&face, format, buffer, stride, y0, y1) == PANTIN_OK;
     }
 
-    pantin_face face;
-    pantin_talk talk;
+    pantin_face face = pantin_face();
+    pantin_talk talk = pantin_talk();
 
   private:
     /* What spans are drawn on. */

@@ -1271,6 +1271,32 @@ static void add_transition(pantin_face *f) {
 static const char *const viseme_names[14] = {"viseme_pp", "viseme_ff", "viseme_th", "viseme_dd", "viseme_kk", "viseme_ch", "viseme_ss",
                                              "viseme_nn", "viseme_rr", "viseme_aa", "viseme_e",  "viseme_i",  "viseme_o",  "viseme_u"};
 
+/* Notes what visemes move. */
+static void note_spoken(pantin_face *f) {
+    uint32_t hash, i;
+    uint8_t viseme;
+    for (viseme = 0; viseme < 14; viseme++) {
+        if (!find_name(&f->model, viseme_names[viseme], &hash)) continue;
+        for (i = 0; i < f->model.name_count; i++) {
+            const uint8_t *at = f->model.names + i * NAME_BYTES;
+            uint8_t target = BYTE(at + 4);
+            if (u16_at(at) == (hash & 0xffff) && u16_at(at + 2) == hash >> 16) f->spoken[target & 63] |= target >> 6;
+        }
+    }
+}
+
+/* The emote gives way to speech. */
+static void give_way(pantin_face *f) {
+    uint8_t i, side;
+    if (f->speaking == 0) return;
+    for (i = 0; i < f->model.shape_count; i++) {
+        for (side = 0; side < 2; side++) {
+            int32_t weight = clamp(f->weights[i][side], -16384, 16384);
+            if (f->spoken[i] >> side & 1) f->weights[i][side] = (int16_t)(weight - ((weight * f->speaking) >> 15));
+        }
+    }
+}
+
 /* Lids go down in 60 ms, stay for 30 ms and go up in 90 ms. */
 #define BLINK_MS 180
 
@@ -1286,6 +1312,7 @@ static void compose(pantin_face *f) {
     uint8_t i, side, speaks = 0;
     read_pose(f);
     add_transition(f);
+    give_way(f);
     for (i = 0; i < f->model.shape_count; i++) {
         for (side = 0; side < 2; side++) f->weights[i][side] = narrow((int32_t)f->weights[i][side] + f->own[i][side]);
     }
@@ -1378,6 +1405,7 @@ pantin_result pantin_face_open(pantin_face *face, const uint8_t *model, uint32_t
     face->transition_ms = face->since_ms = 300;
     face->glance_ms = 50;
     for (i = 0; i < vertex_count(&face->model); i++) neutral(&face->model, i, face->vertices[i]);
+    note_spoken(face);
     pantin_face_aim(face, 0, 0);
     return PANTIN_OK;
 }
@@ -1582,6 +1610,13 @@ pantin_result pantin_face_viseme(pantin_face *face, uint8_t viseme, int32_t weig
     } else {
         face->visemes[viseme - 1] = stored(clamp(weight, -FULL, FULL));
     }
+    face->known &= BEFORE | ROUNDED;
+    return PANTIN_OK;
+}
+
+pantin_result pantin_face_speaking(pantin_face *face, int32_t weight) {
+    if (!face->vertices) return PANTIN_ERROR_HEAD;
+    face->speaking = (uint16_t)clamp(weight, 0, FULL);
     face->known &= BEFORE | ROUNDED;
     return PANTIN_OK;
 }

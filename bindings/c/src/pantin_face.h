@@ -125,6 +125,8 @@ typedef struct pantin_face {
     uint32_t random;
     int16_t look[2], glance[2], glance_from[2], mouth;
     int16_t visemes[14];
+    uint16_t speaking;     /* Q15: how far speech has the mouth to itself */
+    uint8_t spoken[PANTIN_FACE_SHAPES];   /* for each shape, the sides that visemes move: 1 is the left one, 2 the right one */
 } pantin_face;
 
 /* Opens a model of `length` bytes, checks it, and lends the face `size` bytes of memory. Nothing is shown until pantin_face_size was called. Returns
@@ -172,6 +174,10 @@ pantin_result pantin_face_mouth(pantin_face *face, int32_t level);
 
 /* Sets the weight of one of MPEG-4's visemes, 1 to 14, in Q15; viseme 0 sets all to 0. PANTIN_NOT_FOUND for another number. */
 pantin_result pantin_face_viseme(pantin_face *face, uint8_t viseme, int32_t weight);
+
+/* Says how far speech has the mouth to itself, 0 to PANTIN_FACE_FULL: talk.speaking of pantin_talk.h. Emotes give way by that in the units of visemes, such
+ * as open_mouth and pucker, so that the lips of a surprised face meet, too. */
+pantin_result pantin_face_speaking(pantin_face *face, int32_t weight);
 
 /* Lets the face blink and glance about by itself: `seed` chooses when; 0 ends it. */
 pantin_result pantin_face_live(pantin_face *face, uint32_t seed);

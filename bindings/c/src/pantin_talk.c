@@ -17,6 +17,9 @@ typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 /* The time without samples after which the mouth closes. */
 #define SILENT_MS 150
 
+/* Steps of 10 ms for which speech goes on without a viseme: longer than the gaps of p, b and m. */
+#define GAP 40
+
 /* Noise is the lowest level of at least this number of hops. */
 #define LOWEST_HOPS 80
 
@@ -58,7 +61,18 @@ static int32_t greater(int32_t a, int32_t b) { return a > b ? a : b; }
 
 /* A step of all weights towards their targets: half of the way, and five eighths where a weight falls, so that lips meet in a short gap. */
 static void approach(pantin_talk *t) {
-    int i;
+    int i, quiet = 1;
+    for (i = 0; i < PANTIN_TALK_VISEMES; i++) quiet &= t->targets[i] == 0;
+    if (!quiet) {
+        t->gap = GAP;
+    } else if (t->gap) {
+        t->gap--;
+    }
+    if (t->gap == 0) {
+        t->speaking = (uint16_t)(t->speaking - ((t->speaking + 7) >> 3));
+    } else {
+        t->speaking = (uint16_t)(t->speaking + ((PANTIN_TALK_FULL - t->speaking + 3) >> 2));
+    }
     for (i = 0; i < PANTIN_TALK_VISEMES; i++) {
         int32_t rest = (int32_t)t->targets[i] - t->weights[i];
         int32_t step = rest < 0 ? -((-rest * 5) >> 3) : rest >> 1;

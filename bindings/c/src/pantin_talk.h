@@ -9,13 +9,14 @@
  *
  *     pantin_talk_open(&talk, 16000);
  *     for (;;) {
- *         pantin_talk_push(&talk, samples, count);      // what is played now, at most 30 ms of it: longer parts make the lips jump
+ *         pantin_talk_push(&talk, samples, count);      // all that was played since the last picture
  *         pantin_talk_step(&talk, 33);
  *         for (viseme = 1; viseme <= PANTIN_TALK_VISEMES; viseme++) pantin_face_viseme(&face, viseme, talk.weights[viseme - 1]);
+ *         pantin_face_speaking(&face, talk.speaking);   // an emote's open mouth gives way
  *         pantin_face_step(&face, 33);
  *     }
  *
- * A second of 16 kHz takes 1.6 million instructions on a Cortex-M3 and 2.5 million on a Cortex-M0; the structure has 260 bytes.
+ * A second of 16 kHz takes 1.6 million instructions on a Cortex-M3 and 2.5 million on a Cortex-M0; the structure has 264 bytes.
  */
 #ifndef PANTIN_TALK_H
 #define PANTIN_TALK_H
@@ -39,6 +40,8 @@ extern "C" {
 typedef struct pantin_talk {
     uint16_t weights[PANTIN_TALK_VISEMES]; /* Q15, 0 to PANTIN_TALK_FULL, of the visemes 1 to 14 */
     uint16_t targets[PANTIN_TALK_VISEMES]; /* where the weights go */
+    uint16_t speaking;      /* Q15: PANTIN_TALK_FULL while there is sound or a viseme, and for 0.4 s after it */
+    uint8_t gap;            /* steps of 10 ms for which speech goes on if no viseme follows */
     /* Sound. */
     uint32_t rate, phase;   /* samples a second; 8000 is added for each sample, and `rate` subtracted for each one at 8 kHz */
     int32_t sum;            /* of the samples since then */
@@ -65,7 +68,7 @@ typedef struct pantin_talk {
  * hears nothing. Sound of another rate needs it again. */
 pantin_result pantin_talk_open(pantin_talk *talk, uint32_t rate);
 
-/* Listens to `count` samples of one channel. The weights follow every 10 ms of sound, unless a viseme is shown. No effect before pantin_talk_open. */
+/* Listens to `count` samples of one channel: before each picture, all that was played or recorded since the last one. The weights follow every 10 ms of sound, unless a viseme is shown. No effect before pantin_talk_open. */
 void pantin_talk_push(pantin_talk *talk, const int16_t *samples, size_t count);
 
 /* Shows a viseme, 1 to 14, or none, 0, from `at` on until the next one's time: milliseconds of talk->now; a time in the past counts as now. Sound has no

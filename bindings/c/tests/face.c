@@ -1,6 +1,6 @@
 /* Prints checksums of pictures of faces, for comparison with those of the crate pantin-face (tests/harness/vectors/faces.rs):
  *
- *     face emotes MODEL... : of every emote, in the shots of the list below
+ *     face emotes MODEL... : of every emote and of an o in its last frame, in the shots of the list below
  *     face frames MODEL... : the same with a line for each frame
  *     face chaos MODEL WIDTH HEIGHT ORBIT TILT PICTURES : with weights that no clip contains
  *     face mutants MODEL COUNT : of damaged models
@@ -42,6 +42,25 @@ static void open_face(const uint8_t *model, uint32_t length, uint16_t width, uin
     need(pantin_face_transition(&face, 0) == PANTIN_OK, "transition");
 }
 
+/* A picture in which the mouth shows an o, and the emote gives way by three quarters. */
+static uint32_t speaking(void) {
+    uint32_t sum;
+    need(pantin_face_viseme(&face, 13, 20000) == PANTIN_OK && pantin_face_speaking(&face, PANTIN_FACE_FULL * 3 / 4) == PANTIN_OK, "speech");
+    sum = checksum(draw, face.width, face.height);
+    need(pantin_face_viseme(&face, 0, 0) == PANTIN_OK && pantin_face_speaking(&face, 0) == PANTIN_OK, "the end of speech");
+    return sum;
+}
+
+static uint32_t with(uint32_t whole, uint32_t sum, int each) {
+    uint8_t bytes[4];
+    bytes[0] = (uint8_t)sum;
+    bytes[1] = (uint8_t)(sum >> 8);
+    bytes[2] = (uint8_t)(sum >> 16);
+    bytes[3] = (uint8_t)(sum >> 24);
+    if (each) printf("%08x\n", (unsigned)sum);
+    return fold(whole, bytes, 4);
+}
+
 static void emotes(int each, const uint8_t *const *models, const uint32_t *lengths) {
     uint32_t i, n, frame;
     for (i = 0; i < sizeof shots / sizeof *shots; i++) {
@@ -53,16 +72,9 @@ static void emotes(int each, const uint8_t *const *models, const uint32_t *lengt
             need(pantin_face_emote(&face, pantin_emotes[n].name) == PANTIN_OK, "emote");
             if (each) puts(pantin_emotes[n].name);
             for (frame = 0; frame < face.clip.frames; frame++) {
-                uint32_t sum;
-                uint8_t bytes[4];
                 need(face.player.frame == frame, "the frame that is due");
-                sum = checksum(draw, face.width, face.height);
-                if (each) printf("%08x\n", (unsigned)sum);
-                bytes[0] = (uint8_t)sum;
-                bytes[1] = (uint8_t)(sum >> 8);
-                bytes[2] = (uint8_t)(sum >> 16);
-                bytes[3] = (uint8_t)(sum >> 24);
-                whole = fold(whole, bytes, 4);
+                whole = with(whole, checksum(draw, face.width, face.height), each);
+                if (frame + 1 == face.clip.frames) whole = with(whole, speaking(), each);
                 /* 30 frames a second: 33 ms, and a third of one. */
                 need(pantin_face_step(&face, (uint16_t)(33 + (frame % 3 == 0))) == PANTIN_OK, "step");
             }

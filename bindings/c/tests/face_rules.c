@@ -43,7 +43,7 @@ static void closed_faces(void) {
              pantin_face_play(&closed, pantin_emote_sad, sizeof pantin_emote_sad) == PANTIN_ERROR_HEAD &&
              pantin_face_transition(&closed, 1) == PANTIN_ERROR_HEAD && pantin_face_weight(&closed, "joy", 0) == PANTIN_ERROR_HEAD &&
              pantin_face_look(&closed, 0, 0) == PANTIN_ERROR_HEAD && pantin_face_mouth(&closed, 0) == PANTIN_ERROR_HEAD &&
-             pantin_face_viseme(&closed, 1, 0) == PANTIN_ERROR_HEAD && pantin_face_live(&closed, 1) == PANTIN_ERROR_HEAD &&
+             pantin_face_viseme(&closed, 1, 0) == PANTIN_ERROR_HEAD && pantin_face_speaking(&closed, 0) == PANTIN_ERROR_HEAD && pantin_face_live(&closed, 1) == PANTIN_ERROR_HEAD &&
              pantin_face_step(&closed, 1) == PANTIN_ERROR_HEAD && pantin_face_draw(&closed, PANTIN_L8, &byte, 1, 0, 0) == PANTIN_ERROR_HEAD &&
              pantin_face_spans(&closed, nothing, NULL, 0, 0) == PANTIN_ERROR_HEAD && byte == 7,
          "every call before open is refused", "");
@@ -229,6 +229,28 @@ static void mouths(void) {
     need(memcmp(rows, other, sizeof rows) != 0, "viseme 0 ends them", "");
 }
 
+/* Lips of a face whose emote opens the mouth meet while it speaks. */
+static void open_mouths(void) {
+    static const char *const open[] = {"surprised", "shocked", "laughing", "crying", "silly", "delicious"};
+    uint32_t i;
+    for (i = 0; i < sizeof open / sizeof *open; i++) {
+        uint8_t jaw = 0, shape;
+        open_cartoon(&face, memory, sizeof memory);
+        need(pantin_face_emote(&face, open[i]) == PANTIN_OK && pantin_face_step(&face, 600) == PANTIN_OK, "an emote", open[i]);
+        draw(rows);
+        for (shape = 0; shape < face.model.shape_count; shape++) jaw |= face.spoken[shape] && face.weights[shape][0] > 1000;
+        need(jaw, "the emote opens the mouth", open[i]);
+        pantin_face_speaking(&face, PANTIN_FACE_FULL);
+        draw(other);
+        for (shape = 0; shape < face.model.shape_count; shape++) {
+            need(!face.spoken[shape] || face.weights[shape][0] == 0, "the emote gives way to speech", open[i]);
+        }
+        pantin_face_speaking(&face, 0);
+        draw(other);
+        need(memcmp(rows, other, sizeof rows) == 0, "the emote comes back", open[i]);
+    }
+}
+
 static uint8_t greys[SIDE * SIDE];
 
 static void paint(void *context, uint16_t x, uint16_t y, uint16_t count, uint8_t shade) {
@@ -308,6 +330,7 @@ int main(int argc, char **argv) {
     eyes();
     looks();
     mouths();
+    open_mouths();
     divisions();
     wireframe(argv[1]);
     key_clips(argv[2]);

@@ -41,7 +41,7 @@ int main(int argc, char **argv) {
             printf("%d\n", pantin_talk_viseme(&talk, viseme, at) == PANTIN_OK);
         }
         for (i = 0; i < PANTIN_TALK_VISEMES; i++) printf("%u ", talk.weights[i]);
-        printf("\n");
+        printf("%u\n", talk.speaking);
     }
     return 0;
 }

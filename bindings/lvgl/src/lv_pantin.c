@@ -54,6 +54,9 @@ lv_obj_t *lv_pantin_create(lv_obj_t *parent) {
 
 /* ---- The picture ---- */
 
+/* The longest side of a picture. */
+#define MOST_PIXELS 2047
+
 static pantin_face_format format_of(const lv_draw_buf_t *picture) {
     return picture->header.cf == LV_COLOR_FORMAT_L8 ? PANTIN_L8 : PANTIN_RGB565;
 }
@@ -127,24 +130,33 @@ static void draw(lv_pantin_t *p) {
     lv_obj_invalidate_area(obj, &changed);
 }
 
+/* Shows nothing. */
+static void take_away(lv_pantin_t *p) {
+    release(p);
+    p->canvas.draw_buf = NULL;
+    lv_image_set_src((lv_obj_t *)p, NULL);
+}
+
 /* Makes a picture of the size that the object's content has. */
 static void resize(lv_pantin_t *p) {
     lv_obj_t *obj = (lv_obj_t *)p;
-    int32_t width = lv_obj_get_content_width(obj), height = lv_obj_get_content_height(obj);
+    int32_t width = LV_MIN(lv_obj_get_content_width(obj), MOST_PIXELS), height = LV_MIN(lv_obj_get_content_height(obj), MOST_PIXELS);
     lv_color_format_t display = lv_display_get_color_format(lv_obj_get_display(obj));
     lv_color_format_t format = display == LV_COLOR_FORMAT_L8 || display == LV_COLOR_FORMAT_I1 ? LV_COLOR_FORMAT_L8 : LV_COLOR_FORMAT_RGB565;
-    if (width < 1 || height < 1 || !shows(p)) return;
+    if (!shows(p)) return;
+    if (width < 1 || height < 1) {
+        if (p->picture) take_away(p);
+        return;
+    }
     if (p->picture && p->picture->header.w == width && p->picture->header.h == height && p->picture->header.cf == format) return;
     release(p);
-    if (set_size(p, (uint16_t)LV_MIN(width, 2047), (uint16_t)LV_MIN(height, 2047)) == PANTIN_OK) {
-        p->picture = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), (uint32_t)LV_MIN(height, 2047), format, LV_STRIDE_AUTO);
-        p->rows = lv_draw_buf_create((uint32_t)LV_MIN(width, 2047), LV_PANTIN_ROWS, format, LV_STRIDE_AUTO);
+    if (set_size(p, (uint16_t)width, (uint16_t)height) == PANTIN_OK) {
+        p->picture = lv_draw_buf_create((uint32_t)width, (uint32_t)height, format, LV_STRIDE_AUTO);
+        p->rows = lv_draw_buf_create((uint32_t)width, LV_PANTIN_ROWS, format, LV_STRIDE_AUTO);
     }
     if (!p->picture || !p->rows) {
         LV_LOG_ERROR("lv_pantin: no memory for a picture of %d by %d", (int)width, (int)height);
-        release(p);
-        p->canvas.draw_buf = NULL;
-        lv_image_set_src(obj, NULL);
+        take_away(p);
         return;
     }
     lv_draw_buf_clear(p->picture, NULL);
@@ -222,6 +234,7 @@ static void step_face(lv_pantin_t *p, uint16_t ms) {
     for (viseme = 1; viseme <= PANTIN_TALK_VISEMES; viseme++) {
         pantin_face_viseme(&p->face, viseme, p->talk.weights[viseme - 1]);
     }
+    pantin_face_speaking(&p->face, p->talk.speaking);
     pantin_face_step(&p->face, ms);
 }
 

@@ -3,7 +3,7 @@
  *     lv_obj_t *face = lv_pantin_create(lv_screen_active());
  *     lv_obj_set_size(face, 240, 240);
  *     lv_pantin_set_emote(face, "happy");
- *     lv_pantin_push_pcm(face, samples, count);       // what is played now, at most 30 ms of it at a time
+ *     lv_pantin_push_pcm(face, samples, count);       // as it is played
  *
  *     lv_obj_t *body = lv_pantin_create(lv_screen_active());       // with LV_PANTIN_BODY 1
  *     lv_pantin_set_src(body, character, sizeof character);        // a .ptn or .ptb file
@@ -72,7 +72,8 @@ lv_result_t lv_pantin_set_emote(lv_obj_t *obj, const char *name);
 /* Sets the rate of the sound that follows, 8,000 to 48,000 Hz: 16,000 without a call. LV_RESULT_INVALID for another. */
 lv_result_t lv_pantin_set_rate(lv_obj_t *obj, uint32_t rate);
 
-/* Moves the lips by sound: samples of one channel as they are played. Push at most 30 ms at a time: longer parts make the lips jump. */
+/* Moves the lips by sound: samples of one channel as they are played, at least every LV_PANTIN_PERIOD. With a rate that is not the sound's own they move
+ * wrongly. */
 void lv_pantin_push_pcm(lv_obj_t *obj, const int16_t *samples, size_t count);
 
 /* Shows a viseme of MPEG-4, 1 to 14, or none, 0, `ms` milliseconds from now, until the next one's time; visemes win over sound. LV_RESULT_INVALID for

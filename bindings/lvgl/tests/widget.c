@@ -126,9 +126,31 @@ static void speech(void) {
     NEED(lv_pantin_get_face(face)->visemes[10] == 0);
     NEED(lv_pantin_set_viseme(face, 1, 100) == LV_RESULT_OK && lv_pantin_set_viseme(face, 0, 300) == LV_RESULT_OK);
     lv_test_wait(200);
-    NEED(lv_pantin_get_face(face)->visemes[0] > 16000);
+    NEED(lv_pantin_get_face(face)->visemes[0] > 16000 && lv_pantin_get_face(face)->speaking > 16000);
+    lv_test_wait(3000);
+    NEED(lv_pantin_get_face(face)->speaking == 0);
     NEED(lv_pantin_set_viseme(face, 15, 0) == LV_RESULT_INVALID);
     NEED(lv_pantin_set_rate(face, 7000) == LV_RESULT_INVALID && lv_pantin_set_rate(face, 48000) == LV_RESULT_OK);
+    lv_obj_delete(face);
+}
+
+/* A size of 0 gives the picture's memory back; a larger one than pictures have shows what they can. */
+static void sizes(void) {
+    lv_obj_t *face = lv_pantin_create(lv_screen_active());
+    size_t without, with;
+    lv_obj_set_size(face, 0, 0);
+    lv_test_wait(100);
+    without = used();
+    lv_obj_set_size(face, SIZE, SIZE);
+    lv_test_wait(100);
+    with = used();
+    NEED(with > without + SIZE * SIZE);
+    lv_obj_set_size(face, 0, 0);
+    lv_test_wait(100);
+    NEED(used() < with - SIZE * SIZE);
+    lv_obj_set_size(face, 3000, 4);
+    lv_test_wait(100);
+    NEED(lv_pantin_get_face(face)->width == 2047);
     lv_obj_delete(face);
 }
 
@@ -184,6 +206,7 @@ int main(void) {
     lv_display_set_color_format(display, LV_COLOR_FORMAT_RGB565);
     switches();
     speech();
+    sizes();
     refused(display);
     lv_test_wait(100);
     printf("%u bytes of LVGL's memory before the faces, %u after\n", (unsigned)before, (unsigned)used());

@@ -7,7 +7,7 @@
 //! let mut talk = Talk::new(16_000).unwrap();
 //! let mut weights = Weights::new();
 //! # let samples = [0; 533];
-//! talk.push(&samples); // what is played now, at most 30 ms of it: longer parts make the lips jump
+//! talk.push(&samples); // all that was played since the last picture
 //! talk.step(33);
 //! talk.add_to(&mut weights, &model)?;
 //! # Ok::<(), Box<dyn core::error::Error>>(())
@@ -23,6 +23,12 @@
 //!
 //! Noise is the lowest level of the last 0.8 to 1.6 s: what is less than 10.5 dB louder keeps the mouth closed. Noise that begins with the first sample may
 //! move the lips for 0.9 s, and by less than a twentieth after that. Weights approach their targets by half, every 10 ms, and by five eighths where they fall.
+//!
+//! # Speech and emotes
+//!
+//! A surprised face has an open mouth, which would keep the lips of its speech apart. While it speaks, [`Talk::add_to`] takes away what else moves the units
+//! of visemes, such as `open_mouth` and `pucker`, within 0.1 s of the first sound, and gives it back in 0.3 s once there was none for 0.4 s. Brows,
+//! eyes and the corners of the mouth keep the emote.
 //!
 //! A second of 16 kHz takes about 1.6 million instructions on a Cortex-M3, and a [`Talk`] about 350 bytes. `pantin_talk.h` has the same in C, bit for bit.
 
@@ -67,6 +73,9 @@ const TICK_MS: u32 = 10;
 
 /// The time without samples after which the mouth closes.
 const SILENT_MS: u32 = 150;
+
+/// Steps of 10 ms for which speech goes on without a viseme: longer than the gaps of p, b and m.
+const GAP: u8 = 40;
 
 /// Noise is the lowest level of at least this number of hops.
 const LOWEST_HOPS: u8 = 80;
@@ -113,6 +122,9 @@ impl core::error::Error for VisemeError {}
 pub struct Talk {
     weights: [u16; 14],
     targets: [u16; 14],
+    /// How far speech has the mouth to itself, and the steps for which it goes on if no viseme follows.
+    speaking: u16,
+    gap: u8,
     rate: u32,
     /// [`BAND_RATE`] times the samples since the last one at 8 kHz, less `rate` for each of those.
     phase: u32,
@@ -148,6 +160,8 @@ impl Talk {
         (LEAST_RATE..=MOST_RATE).contains(&rate).then(|| Talk {
             weights: [0; 14],
             targets: [0; 14],
+            speaking: 0,
+            gap: 0,
             rate,
             phase: 0,
             sum: 0,
@@ -173,8 +187,15 @@ impl Talk {
         &self.weights
     }
 
-    /// Adds the weights to those of a face. Fails for a model that lacks one of [`VISEMES`] whose weight is not 0.
+    /// How far speech has the mouth to itself, Q15: 0 to [`FULL_WEIGHT`], which it is while there is sound or a viseme, and for 0.4 s after it.
+    pub fn speaking(&self) -> u16 {
+        self.speaking
+    }
+
+    /// Adds the weights to those of a face, whose own weights of the units of visemes give way by [`Talk::speaking`]. Fails for a model that lacks one
+    /// of [`VISEMES`] whose weight is not 0.
     pub fn add_to(&self, weights: &mut Weights, model: &Model) -> Result<(), UnknownName> {
+        weights.fade(model, &VISEMES, self.speaking);
         for (name, &weight) in VISEMES.iter().zip(&self.weights) {
             if weight > 0 {
                 weights.add(model, name, Weight::from_bits(i32::from(weight) << 1))?;
@@ -322,6 +343,12 @@ impl Talk {
 
     /// A step of all weights towards their targets: half of the way, and five eighths where a weight falls, so that lips meet in a short gap.
     fn approach(&mut self) {
+        let quiet = self.targets.iter().all(|&target| target == 0);
+        self.gap = if quiet { self.gap.saturating_sub(1) } else { GAP };
+        self.speaking = match self.gap {
+            0 => self.speaking - self.speaking.div_ceil(8),
+            _ => self.speaking + (FULL - self.speaking).div_ceil(4),
+        };
         for (weight, &target) in self.weights.iter_mut().zip(&self.targets) {
             let rest = i32::from(target) - i32::from(*weight);
             let step = if rest < 0 { -((-rest * 5) >> 3) } else { rest >> 1 };

@@ -60,6 +60,26 @@ impl Weights {
         each_driven(model, name, |entry| self.add_to(entry.target, entry.weight(weight)))
     }
 
+    /// Takes the part `part`, 0 to [`FULL_WEIGHT`], of what each shape has that one of `names` drives: once, however many of them drive it. Names that the
+    /// model does not have are passed over.
+    pub fn fade(&mut self, model: &Model, names: &[&str], part: u16) {
+        if part == 0 {
+            return;
+        }
+        let part = i32::from(part).min(FULL_WEIGHT);
+        let mut driven = [[false; 2]; SHAPES];
+        for name in names {
+            let _ = each_driven(model, name, |entry| {
+                let Some(pair) = driven.get_mut(entry.target.shape()) else { return };
+                pair.iter_mut().zip(entry.target.sides()).for_each(|(seen, side)| *seen |= side);
+            });
+        }
+        let slots = self.0.iter_mut().flatten().zip(driven.iter().flatten());
+        for (slot, _) in slots.filter(|slot| *slot.1) {
+            *slot = faded(*slot, part);
+        }
+    }
+
     /// Adds a weight in Q15 to the sides of one shape; the sum saturates at -2 and 2.
     #[inline(always)]
     pub fn add_to(&mut self, target: Target, weight: i32) {
@@ -92,6 +112,12 @@ impl Weights {
 #[inline(always)]
 fn stored(weight: i32) -> i16 {
     (weight >> 1).clamp(i16::MIN.into(), i16::MAX.into()) as i16
+}
+
+/// What is left of a weight, of which at most a full one is used.
+fn faded(weight: i16, part: i32) -> i16 {
+    let weight = clamped(weight) >> 1;
+    (weight - ((weight * part) >> 15)) as i16
 }
 
 /// Q14 to Q15, at most a full weight.

@@ -279,3 +279,32 @@ fn a_face_shows_the_weights() {
     expected.add(&model, "viseme_aa", pantin_face::Weight::ONE).unwrap();
     assert!(weights.pairs().eq(expected.pairs()));
 }
+
+#[test]
+fn the_lips_of_a_face_with_an_open_mouth_meet_while_it_speaks() {
+    let model = Model::new_checked(MODEL).unwrap();
+    let mut surprised = Weights::new();
+    surprised.add(&model, "amazed", pantin_face::Weight::ONE).unwrap();
+    let mut talk = Talk::new(8000).unwrap();
+    let shown = |talk: &Talk| {
+        let mut weights = surprised.clone();
+        talk.add_to(&mut weights, &model).unwrap();
+        weights
+    };
+    assert!(shown(&talk).pairs().eq(surprised.pairs()));
+    talk.viseme(1, 0).unwrap();
+    talk.viseme(0, 500).unwrap();
+    talk.step(490);
+    let mut closed = surprised.clone();
+    closed.fade(&model, &VISEMES, FULL_WEIGHT as u16);
+    closed.add(&model, "viseme_pp", pantin_face::Weight::ONE).unwrap();
+    assert!(shown(&talk).pairs().eq(closed.pairs()));
+    assert!(closed.pairs().ne(surprised.pairs()));
+    // It keeps its brows.
+    assert!(closed.pairs().zip(surprised.pairs()).any(|(closed, own)| closed == own && own != [0; 2]));
+    talk.step(300);
+    assert_eq!(talk.speaking(), FULL_WEIGHT as u16);
+    talk.step(1200);
+    assert_eq!(talk.speaking(), 0);
+    assert!(shown(&talk).pairs().eq(surprised.pairs()));
+}

@@ -10,8 +10,9 @@ use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray8, GrayColor, PixelColor, Rgb565};
 use pantin::{ChannelState, Clip, Player};
+use pantin_face::talk::VISEMES;
 use pantin_face::{
-    Binding, CARTOON, EMOTES, FULL_WEIGHT, FaceRenderer, FaceView, MODEL, Model, Morph, SHAPES, SMALL, Target, Weights,
+    Binding, CARTOON, EMOTES, FULL_WEIGHT, FaceRenderer, FaceView, MODEL, Model, Morph, SHAPES, SMALL, Target, Weight, Weights,
 };
 use pantin_figure::{Canvas, Ink};
 
@@ -59,7 +60,7 @@ pub fn text() -> Result<String> {
     Ok(text)
 }
 
-/// The checksum of every frame's picture.
+/// The checksum of every frame's picture, and of one in which the mouth shows an o and the last frame gives way by three quarters.
 pub fn frames(shot: Shot, clip: &[u8]) -> Result<Vec<u32>> {
     let clip = Clip::new_checked(clip)?;
     let mut face = Face::new(model(shot.0), shot.1, shot.2)?;
@@ -68,13 +69,16 @@ pub fn frames(shot: Shot, clip: &[u8]) -> Result<Vec<u32>> {
     let frames = clip.frames();
     let mut player = Player::new(clip, &mut states, &mut pose)?;
     let mut weights = Weights::new();
-    (0..frames)
-        .map(|frame| {
-            player.seek(frame);
-            binding.read_checked(player.pose(), &mut weights)?;
-            Ok(face.checksum(&weights))
-        })
-        .collect()
+    let mut sums = Vec::new();
+    for frame in 0..frames {
+        player.seek(frame);
+        binding.read_checked(player.pose(), &mut weights)?;
+        sums.push(face.checksum(&weights));
+    }
+    weights.fade(&face.model, &VISEMES, (FULL_WEIGHT * 3 / 4) as u16);
+    weights.add(&face.model, "viseme_o", Weight::from_bits(40_000))?;
+    sums.push(face.checksum(&weights));
+    Ok(sums)
 }
 
 /// Checksums of pictures with weights that no clip contains, one a line.

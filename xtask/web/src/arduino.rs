@@ -63,7 +63,7 @@ fn make_room(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Copies a folder, without tests. Returns the number of files.
+/// Copies a folder, without tests. Links of its pages to what lies elsewhere in the repository become plain text. Returns the number of files.
 pub(crate) fn copy(from: &Path, to: &Path) -> Result<usize> {
     fs::create_dir_all(to)?;
     let mut count = 0;
@@ -75,12 +75,31 @@ pub(crate) fn copy(from: &Path, to: &Path) -> Result<usize> {
         }
         if path.is_dir() {
             count += copy(&path, &to.join(name))?;
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            let page = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+            fs::write(to.join(name), without_links_out(&page))?;
+            count += 1;
         } else {
             fs::copy(&path, to.join(name)).with_context(|| path.display().to_string())?;
             count += 1;
         }
     }
     Ok(count)
+}
+
+/// A page of `bindings/NAME` whose links to other folders than `bindings` say where in the repository that is.
+fn without_links_out(page: &str) -> String {
+    let mut parts = page.split("](../../");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (target, rest) = part.split_once(')').unwrap_or((part, ""));
+        let file = target.split('#').next().unwrap_or_default();
+        if let Some(at) = text.rfind('[') {
+            text.remove(at);
+        }
+        text += &format!(" (`{file}` in Pantin's repository){rest}");
+    }
+    text
 }
 
 #[cfg(test)]

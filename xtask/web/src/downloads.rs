@@ -89,7 +89,13 @@ mod tests {
         for name in ["library.properties", "src/pantin_face.c", "src/PantinFace.h", "examples/Face/hello.h"] {
             assert!(arduino.contains(&format!("Pantin/{name}")), "{name}");
         }
+        assert!(lvgl.contains(&"pantin/lvgl/examples/speech.c".to_owned()));
         assert!(lvgl.iter().chain(&arduino).all(|name| !name.contains("/tests/")));
+        for name in ["c", "lvgl"] {
+            let mut zip = zip::ZipArchive::new(std::fs::File::open(out.path().join(LVGL)).unwrap()).unwrap();
+            let page = std::io::read_to_string(zip.by_name(&format!("pantin/{name}/README.md")).unwrap()).unwrap();
+            assert!(!page.contains("](../../") && !page.contains("](tests/"), "{name}");
+        }
         let first = std::fs::read(out.path().join(LVGL)).unwrap();
         archives(out.path()).unwrap();
         assert_eq!(std::fs::read(out.path().join(LVGL)).unwrap(), first);

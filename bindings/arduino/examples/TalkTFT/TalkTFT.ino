@@ -9,14 +9,19 @@ PantinFace face;
 
 // A tone that comes and goes, in place of speech: give these samples to I2S as well, or take those of a microphone.
 int16_t samples[480];
-uint32_t played;
+uint32_t played, until;
 
-void speak() {
-  for (size_t i = 0; i < 480; i++, played++) {
-    bool loud = played / 4000 % 2 != 0;
-    samples[i] = loud ? (played * 700 % 16000 < 8000 ? 6000 : -6000) : 0;
+// All sound that is due: 16 samples a millisecond.
+void speak(uint32_t now) {
+  while (now != until) {
+    uint32_t ms = now - until < 30 ? now - until : 30;
+    for (size_t i = 0; i < 16 * ms; i++, played++) {
+      bool loud = played / 4000 % 2 != 0;
+      samples[i] = loud ? (played * 700 % 16000 < 8000 ? 6000 : -6000) : 0;
+    }
+    face.sound(samples, 16 * ms);
+    until += ms;
   }
-  face.sound(samples, 480);
 }
 
 void setup() {
@@ -27,11 +32,13 @@ void setup() {
   if (!face.begin(pantin_cartoon, sizeof pantin_cartoon, 240, 240)) Serial.println("the model is damaged");
   face.emotes(pantin_emotes, PANTIN_EMOTES);
   if (!face.emote("happy")) Serial.println("there is no such emote");
+  until = millis();
 }
 
 void loop() {
-  if (!face.update(millis())) return;
-  speak(); // 30 ms of sound for each picture
+  uint32_t now = millis();
+  speak(now);
+  if (!face.update(now)) return;
   sprite.fillSprite(TFT_BLACK);
   face.draw(sprite);
   sprite.pushSprite(0, 0);

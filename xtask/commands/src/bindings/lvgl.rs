@@ -45,7 +45,7 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let feet = motions.join("character.ptb");
     let files = [motions.join("walk.ptn"), bank, without_feet(folder, &feet)?, feet, once];
     for (name, lines, files) in [("widget", 4, &[][..]), ("body", 3, &files)] {
-        let mut program = Command::new(program(name, &SANITIZERS)?);
+        let mut program = Command::new(program(&format!("tests/{name}.c"), &SANITIZERS)?);
         program.args(files);
         let printed = String::from_utf8(output(program)?.stdout)?;
         ensure!(printed.lines().count() == lines, "{printed}");
@@ -76,13 +76,13 @@ fn without_feet(folder: &TempDir, character: &Path) -> Result<PathBuf> {
     Ok(bank)
 }
 
-/// Builds one of the tests with the widget, LVGL and all our sources for this machine.
-fn program(name: &str, options: &[&str]) -> Result<PathBuf> {
+/// Builds one of the tests or examples, `tests/NAME.c`, with the widget, LVGL and all our sources for this machine.
+fn program(source: &str, options: &[&str]) -> Result<PathBuf> {
     let (lvgl, library) = (sources()?, library(&HERE)?);
-    let program = folder(&HERE)?.join(name);
+    let program = folder(&HERE)?.join(Path::new(source).file_stem().context("a source has a name")?);
     let mut gcc = Command::new("gcc");
     gcc.current_dir(home()).args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE"]).args(options);
-    gcc.args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(&lvgl).arg(format!("tests/{name}.c"));
+    gcc.args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(&lvgl).arg(source);
     gcc.args(["src/lv_pantin.c", "src/lv_pantin_body.c"]).args(SOURCES.map(|source| Path::new("../c").join(source)));
     gcc.arg(&library).arg("-lm").arg("-o").arg(&program);
     output(gcc)?;

@@ -72,7 +72,7 @@ fn expected(rate: u32) -> Result<String> {
         }
         let weights = talk.as_ref().map_or([0; 14], |talk| *talk.weights());
         weights.iter().for_each(|weight| text += &format!("{weight} "));
-        text.push('\n');
+        writeln!(text, "{}", talk.as_ref().map_or(0, Talk::speaking))?;
     }
     Ok(text)
 }

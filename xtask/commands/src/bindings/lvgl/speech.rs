@@ -57,7 +57,7 @@ pub fn speech() -> Result<()> {
         return Ok(());
     };
     let phonemes = lines.map(phoneme).collect::<Result<Vec<_>>>()?;
-    let mut program = Command::new(super::program("speech", &["-O2"])?);
+    let mut program = Command::new(super::program("examples/speech.c", &["-O2"])?);
     program.arg(&sound).arg(rate.to_string()).arg(&pictures);
     let jaws: Vec<u32> = String::from_utf8(output(program)?.stdout)?.lines().map(str::parse).collect::<Result<_, _>>()?;
     let count = video(&pictures, &gif)?;
