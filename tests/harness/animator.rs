@@ -117,7 +117,8 @@ pub fn with_table(bank: &[u8], clips: u32, numbers: &mut Sequence) -> Vec<u8> {
         let blends = parameters > 0 && numbers.below(4) == 0;
         let other = if blends { numbers.below(clips) as u8 } else { 255 };
         let speed = if numbers.below(2) == 0 { 256 } else { numbers.between(-1030, 1030) } as i16;
-        body.extend([numbers.below(clips) as u8, other, if blends { numbers.below(parameters) as u8 } else { 0 }, 0]);
+        let (by, follow) = if blends { (numbers.below(parameters) as u8, numbers.below(80) as u8) } else { (0, 0) };
+        body.extend([numbers.below(clips) as u8, other, by, follow]);
         body.extend(speed.to_le_bytes());
         body.extend([(any + own * state) as u8, own as u8]);
     }

@@ -484,8 +484,8 @@ static int32_t moved(int32_t p, const pantin_channel *c, uint8_t what) {
     return what == NEXT ? sum(p, (int32_t)c->v) : what == FIRST ? (int32_t)c->w : p;
 }
 
-static void root_turns(const pantin_animator *a, uint8_t what, int32_t *turns) {
-    const pantin_player *p = &a->track.player;
+static void root_turns(const pantin_animator *a, const pantin_track *t, uint8_t what, int32_t *turns) {
+    const pantin_player *p = &t->player;
     uint8_t i, count = (uint8_t)(a->turns.length < 4 ? a->turns.length : 4);
     uint16_t m;
     memset(turns, 0, 4 * sizeof *turns);
@@ -496,8 +496,8 @@ static void root_turns(const pantin_animator *a, uint8_t what, int32_t *turns) {
     }
 }
 
-static void root_at(const pantin_animator *a, uint8_t what, int32_t *place, int32_t *yaw) {
-    const pantin_player *p = &a->track.player;
+static void root_at(const pantin_animator *a, const pantin_track *t, uint8_t what, int32_t *place, int32_t *yaw) {
+    const pantin_player *p = &t->player;
     int32_t turns[4], q[4];
     uint8_t i;
     uint16_t m;
@@ -508,19 +508,19 @@ static void root_at(const pantin_animator *a, uint8_t what, int32_t *place, int3
             if (p->moving[m].channel == channel) place[i] = moved(place[i], &p->moving[m], what);
         }
     }
-    root_turns(a, what, turns);
+    root_turns(a, t, what, turns);
     /* Less than a whole rotation does not turn from lap to lap. */
     *yaw = unit_of(a->turns.shape, &a->root, turns, turn_count(a), q) ? yaw_of_unit(a, q) : 0;
 }
 
-static void find_seam(pantin_animator *a, uint8_t what, const int32_t *next, int32_t next_yaw) {
-    const pantin_clip *clip = &a->track.clip;
-    pantin_seam *seam = &a->track.seam;
+static void find_seam(const pantin_animator *a, pantin_track *t, uint8_t what, const int32_t *next, int32_t next_yaw) {
+    const pantin_clip *clip = &t->clip;
+    pantin_seam *seam = &t->seam;
     int64_t units = (int64_t)RETURNS_CM * 1000000, way[2];
     int32_t yaw;
     uint8_t i, near = 1, turns;
     int8_t shift = clip->exponent;
-    root_at(a, what, seam->first, &yaw);
+    root_at(a, t, what, seam->first, &yaw);
     units = shift >= 0 ? units >> shift : (int64_t)((uint64_t)units << (shift < -40 ? 40 : -shift));
     units = clamp(units / (int64_t)clip->rig.unit_micro_cm, 0, units > 0 ? units : 0);
     yaw = difference(next_yaw, yaw);
@@ -542,13 +542,13 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
     pantin_result result;
     if (t->closed || !t->clip.looped || frame_of(t) + 1 < t->clip.frames) return PANTIN_OK;
     /* Without the lap to come, the root moves on as it did. */
-    if (a && !t->seam.known) root_at(a, NEXT, next, &next_yaw);
+    if (a && !t->seam.known) root_at(a, t, NEXT, next, &next_yaw);
     result = lead_to_start(t);
     if (result != PANTIN_OK) return result;
     t->closed = 1;
     if (!a) return PANTIN_OK;
-    if (!t->seam.known) find_seam(a, FIRST, next, next_yaw);
-    root_turns(a, FIRST, turns);
+    if (!t->seam.known) find_seam(a, t, FIRST, next, next_yaw);
+    root_turns(a, t, FIRST, turns);
     count = t->seam.yaw ? turn_count(a) : 0;
     if (t->seam.yaw) {
         turn_root(a, t->seam.yaw, turns, count);
@@ -573,7 +573,7 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
 
 /* Whether the crate keeps how a loop begins, which shows where it goes over the seam. */
 static void keep_start(pantin_track *t, const pantin_animator *a) {
-    if (a && a->left == 0 && t->clip.looped && moving_count(&t->player) == t->player.moving_count) t->lapped = 1;
+    if (a && t == &a->track && a->left == 0 && t->clip.looped && moving_count(&t->player) == t->player.moving_count) t->lapped = 1;
 }
 
 /* Goes from the last frame of a loop to frame 0. In the first lap, learns where a lap takes the root. */
@@ -582,9 +582,9 @@ static pantin_result lap(pantin_track *t, pantin_animator *a) {
     uint8_t learns = a && !t->seam.known;
     pantin_result result;
     /* Without the lap to come, the root moves on as it did. */
-    if (learns) root_at(a, NEXT, next, &next_yaw);
+    if (learns) root_at(a, t, NEXT, next, &next_yaw);
     result = go_to(t, 0);
-    if (result == PANTIN_OK && learns) find_seam(a, NOW, next, next_yaw);
+    if (result == PANTIN_OK && learns) find_seam(a, t, NOW, next, next_yaw);
     if (!t->lapped) keep_start(t, a);
     return result;
 }
@@ -784,7 +784,7 @@ static int32_t fraction_of(int32_t x, uint32_t over, uint32_t under) {
     return (int32_t)(((int64_t)x * (int32_t)(((uint64_t)over << shift) / under)) >> shift);
 }
 
-/* Sets accelerations and slopes so that differences and velocities come to zero in a number of frames. The cubic is solved again with 128, 32 and 2
+/* Sets accelerations and slopes so that differences and velocities come to zero in a number of frames. It is solved again with 128, 32 and 2
    frames left, so that the end is exactly zero. */
 void pantin_animator_solve(uint8_t frames, pantin_offset *o) {
     uint32_t n = frames;
@@ -809,8 +809,14 @@ static void solve_all(pantin_animator *a, uint8_t frames) {
     for (c = 0; c < a->channels; c++) pantin_animator_solve(frames, &a->memory->offsets[c]);
 }
 
+/* Whether the cubics are solved again with so many frames left: not before velocities that die out in fewer frames have done so. */
+static int solves_at(const pantin_animator *a, uint8_t left) {
+    if (left == a->left_then) return left > 0;
+    return (left == 2 || left == 32 || left == 128) && (left < a->left_then || !a->left_then);
+}
+
 static void solve_again(pantin_animator *a) {
-    if (a->left == 2 || a->left == 32 || a->left == 128) solve_all(a, a->left);
+    if (solves_at(a, a->left)) solve_all(a, a->left);
 }
 
 static void step_offset(pantin_offset *o) {
@@ -893,11 +899,10 @@ static int carry(pantin_animator *a) {
 
 /* Whether this number of frames ends before the clip's last frame, and does not pass a frame where the cubics are solved. */
 static int may_carry(const pantin_animator *a, uint8_t frames) {
-    static const uint8_t again[3] = {2, 32, 128};
     uint8_t i;
     if (a->left <= 2 || a->left < frames) return 0;
-    for (i = 0; i < 3 && frames > 1; i++) {
-        if (a->left > again[i] && a->left - frames < again[i]) return 0;
+    for (i = 1; i < frames; i++) {
+        if (solves_at(a, (uint8_t)(a->left - i))) return 0;
     }
     return frame_of(&a->track) + frames + 1 < a->track.clip.frames;
 }
@@ -917,7 +922,7 @@ static int run_carried(pantin_animator *a, int together, uint8_t frames, uint32_
     a->left = (uint8_t)(a->left - frames);
     a->rest_ns = rest_ns;
     a->track.rest = (int64_t)rest_ns << 16;
-    if (frames > 0 && (a->left == 2 || a->left == 32 || a->left == 128)) {
+    if (frames > 0 && solves_at(a, a->left)) {
         pantin_animator_leave_carried(a);
         solve_again(a);
     }
@@ -1219,11 +1224,26 @@ static uint16_t moving_of(const pantin_track *t) {
     return last || t->ended ? 0 : moving_count(&t->player);
 }
 
-/* Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset. */
-static void take_motion(pantin_animator *a, const pantin_clip *clip) {
-    int64_t ratio = (int64_t)(((uint64_t)clip->frame_time_ns << 16) / a->track.clip.frame_time_ns), speed;
-    uint16_t c, count = moving_of(&a->track);
-    ratio = clamp(ratio, 0, 1L << 30);
+/* How much of a frame of one clip passes in one of another, in 2^-16. */
+static int64_t ratio_of(const pantin_clip *of, const pantin_clip *clip) {
+    return clamp((int64_t)(((uint64_t)clip->frame_time_ns << 16) / of->frame_time_ns), 0, 1L << 30);
+}
+
+/* Adds a weight of what the channels of a track move in a frame of the new clip. */
+static void add_motion(pantin_animator *a, const pantin_track *t, uint16_t weight, const pantin_clip *clip) {
+    int64_t speed = (t->speed * ratio_of(&t->clip, clip)) >> 16;
+    uint16_t c, count = moving_of(t);
+    for (c = 0; c < count; c++) {
+        const pantin_channel *m = &t->player.moving[c];
+        pantin_offset *o = &a->memory->offsets[m->channel];
+        o->v = sum(o->v, scaled(weighted((int32_t)m->v, weight), speed));
+    }
+}
+
+/* Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset. A weight of a second track may be mixed in. */
+static void take_motion(pantin_animator *a, const pantin_clip *clip, const pantin_track *second, uint16_t weight) {
+    int64_t ratio = ratio_of(&a->track.clip, clip);
+    uint16_t c;
     a->stepped = 1;
     for (c = 0; c < a->channels; c++) {
         pantin_offset *o = &a->memory->offsets[c];
@@ -1231,12 +1251,8 @@ static void take_motion(pantin_animator *a, const pantin_clip *clip) {
         o->d = a->pose[c];
         o->v = sum(o->d, own);
     }
-    speed = (a->track.speed * ratio) >> 16;
-    for (c = 0; c < count; c++) {
-        const pantin_channel *m = &a->track.player.moving[c];
-        pantin_offset *o = &a->memory->offsets[m->channel];
-        o->v = sum(o->v, scaled((int32_t)m->v, speed));
-    }
+    add_motion(a, &a->track, (uint16_t)((1u << 15) - weight), clip);
+    if (second) add_motion(a, second, weight, clip);
 }
 
 /* The kept poses of up to 4 channels, of this instant and of a frame later. */
@@ -1301,18 +1317,41 @@ static void take_difference(pantin_animator *a, uint8_t still) {
     }
 }
 
+/* The time in ns in which a difference of velocities dies out, at most. */
+#define SWING_NS 250000000u
+
+/* Lets differences die out in a number of frames, and their velocities in a quarter of a second at most, so that limbs do not swing past both motions. */
 static void start_transition(pantin_animator *a, uint8_t frames) {
+    uint32_t frame_time = a->track.clip.frame_time_ns, few = SWING_NS / frame_time + (SWING_NS % frame_time != 0);
+    uint16_t c;
     uint8_t i;
+    if (few < 2) few = 2;
     a->left = frames;
+    a->left_then = few + 2 < frames ? (uint8_t)(frames - few) : 0;
     a->rest_ns = 0;
+    for (c = 0; c < a->channels; c++) {
+        pantin_offset *o = &a->memory->offsets[c], fast;
+        if (!a->left_then) {
+            pantin_animator_solve(frames, o);
+            continue;
+        }
+        /* The sum of two cubics is one. */
+        fast = *o;
+        fast.d = o->v = 0;
+        pantin_animator_solve(frames, o);
+        o->v = fast.v;
+        pantin_animator_solve((uint8_t)few, &fast);
+        o->w = sum(o->w, fast.w);
+        o->k = sum(o->k, fast.k);
+    }
     /* The figure keeps its place: only the root's velocity dies out, and where it carries the root is added to the way. */
     for (i = 0; i < 2; i++) {
         if (a->place_channels[i] != NO_CHANNEL) {
             pantin_offset *o = &a->memory->offsets[a->place_channels[i]];
             o->d = (int32_t)(uint32_t)(uint64_t)-((int64_t)o->v * frames / 3);
+            pantin_animator_solve(frames, o);
         }
     }
-    solve_all(a, frames);
 }
 
 /* A length in another unit: times 2^shift, rounded down; cut off at the range of a channel. */
@@ -1366,18 +1405,28 @@ static pantin_result convert(pantin_animator *a, const pantin_clip *old) {
     return find_root(a);
 }
 
-static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind, uint8_t frames) {
+/* How a transition is made. */
+typedef struct {
+    uint32_t frame;
+    int32_t speed;
+    pantin_transition kind;
+    uint8_t frames;
+    const pantin_track *second; /* of which a weight is mixed in, or NULL */
+    uint16_t weight;
+} change;
+
+static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, const change *how) {
+    uint8_t frames = how->kind == PANTIN_CUT ? 0 : how->frames;
     pantin_clip old = a->track.clip;
     pantin_placement now = a->placement;
     int32_t yaw, turned;
     uint8_t i;
     pantin_result result;
     if (old.rig.id != clip->rig.id) return PANTIN_ERROR_OTHER_RIG;
-    if (kind == PANTIN_CUT) frames = 0;
     pantin_animator_leave_carried(a);
     yaw = yaw_of(a, a->pose);
-    take_motion(a, clip);
-    result = start_track(&a->track, clip, a->channels, frame, speed);
+    take_motion(a, clip, how->second, how->weight);
+    result = start_track(&a->track, clip, a->channels, how->frame, how->speed);
     if (result != PANTIN_OK) {
         a->left = 0;
         compose(a);
@@ -1391,7 +1440,7 @@ static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, uint32
     /* The new clip's heading stands where the old one's stood. */
     turned = difference(yaw, yaw_of(a, a->track.player.pose));
     turn_motion(a, difference(0, turned));
-    take_difference(a, kind == PANTIN_FADED);
+    take_difference(a, how->kind == PANTIN_FADED);
     start_transition(a, frames);
     events_forward(a, frame_of(&a->track), frame_of(&a->track) + 1);
     compose(a);
@@ -1403,10 +1452,16 @@ static pantin_result go_over(pantin_animator *a, const pantin_clip *clip, uint32
 
 pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip, uint32_t frame, int32_t speed, pantin_transition kind, uint8_t frames) {
     pantin_animator before;
+    change how;
     pantin_result result = begin_call(a, &before);
     if (result != PANTIN_OK) return result;
+    memset(&how, 0, sizeof how);
+    how.frame = frame;
+    how.speed = speed;
+    how.kind = kind;
+    how.frames = frames;
     begin_reads(clip);
-    result = go_over(a, clip, frame, speed, kind, frames);
+    result = go_over(a, clip, &how);
     if (reads_of(clip, PANTIN_OK) == PANTIN_OK) return end_call(a, &before, result);
     result = reads_of(clip, PANTIN_OK);
     take_back(a, &before, a->stepped);
@@ -1506,6 +1561,8 @@ static int64_t in_step(const pantin_track *other, const pantin_clip *clip, uint3
 enum { MACHINE_SECTION = 4, TABLE_VERSION = 1 };
 enum { VERSION_BYTE = 0, STATES, TRANSITIONS, PARAMETERS, INPUTS, FIRST_STATE, ANY, LAYERS };
 enum { HEADER_BYTES = 8, STATE_BYTES = 8, TRANSITION_BYTES = 8, PARAMETER_BYTES = 6, LAYER_BYTES = 12 };
+/* The unit of times in rows, in microseconds. */
+#define UNIT_US 15625u
 enum { ON_END = 0, ON_INPUT, ON_RELEASE, ON_EVENT, ON_ABOVE, ON_BELOW };
 #define IN_STEP 255u
 
@@ -1525,6 +1582,7 @@ void pantin_animator_read_state(const pantin_character *c, uint8_t state, pantin
     row->clip = table_byte(c, at);
     row->other = table_byte(c, at + 1);
     row->parameter = table_byte(c, at + 2);
+    row->follow = table_byte(c, at + 3);
     row->speed = (int32_t)table_number(c, at + 4) * 256;
     row->first = table_byte(c, at + 6);
     row->count = table_byte(c, at + 7);
@@ -1611,7 +1669,7 @@ static int check_states(const pantin_character *c) {
     if (!check_transitions(c, 0, c->counts[ANY])) return 0;
     for (state = 0; state < c->counts[STATES]; state++) {
         pantin_animator_read_state(c, state, &row);
-        if (table_byte(c, state_at(state) + 3) || row.speed < -4 * PANTIN_SPEED || row.speed > 4 * PANTIN_SPEED) return 0;
+        if ((row.other == PANTIN_NO_CLIP && row.follow) || row.speed < -4 * PANTIN_SPEED || row.speed > 4 * PANTIN_SPEED) return 0;
         if (row.clip >= c->bank.clips || !check_transitions(c, row.first, row.count)) return 0;
         if (row.other != PANTIN_NO_CLIP && (row.other >= c->bank.clips || row.parameter >= c->counts[PARAMETERS])) return 0;
     }
@@ -1859,11 +1917,82 @@ static pantin_result mix(pantin_animator *a, const pantin_track *other, uint16_t
 }
 
 /* How much of the second clip a parameter mixes in. */
-uint16_t pantin_animator_weight(const pantin_character *c, uint8_t parameter) {
+static uint16_t weight_of(const pantin_character *c, uint8_t parameter) {
     int32_t low = table_number(c, parameter_at(c, parameter)), high = table_number(c, parameter_at(c, parameter) + 2);
     /* So that bytes that cannot be read divide nothing by 0. */
     if (high <= low) return 0;
     return (uint16_t)clamp((int64_t)(c->parameters[parameter] - low) * 32768 / (high - low), 0, 1 << 15);
+}
+
+/* Lets a blend follow its parameter. */
+static void follow(pantin_character *c, uint32_t elapsed_us) {
+    pantin_state_row row;
+    uint64_t step;
+    uint16_t to;
+    if (!c->blending) return;
+    pantin_animator_read_state(c, c->state, &row);
+    to = weight_of(c, row.parameter);
+    if (row.follow) {
+        uint32_t whole_us = row.follow * UNIT_US;
+        step = (((uint64_t)elapsed_us << 15) + whole_us - 1) / whole_us;
+        to = (uint16_t)clamp(to, c->mixed - (int64_t)step, c->mixed + (int64_t)step);
+    }
+    c->mixed = to;
+}
+
+/* Where the root is in a clip. */
+static void root_place(const pantin_animator *a, const pantin_track *t, int32_t *place) {
+    uint16_t m, part = pantin_animator_part(t) >> 1;
+    uint8_t i;
+    for (i = 0; i < 2; i++) {
+        uint16_t channel = a->place_channels[i];
+        place[i] = channel == NO_CHANNEL ? 0 : t->player.pose[channel];
+        for (m = 0; t->rest && m < moving_count(&t->player); m++) {
+            const pantin_channel *own = &t->player.moving[m];
+            if (own->channel == channel) place[i] = sum(place[i], weighted((int32_t)own->v, part));
+        }
+    }
+}
+
+/* The way between two instants of a loop, less than a lap, in the clip's axes. Returns 0 over a seam that turns the figure. */
+static int way_between(const pantin_clip_instant *before, const pantin_clip_instant *now, const pantin_seam *seam, int forward, int32_t *way) {
+    int lap = forward ? now->frame < before->frame || (now->frame == before->frame && now->part < before->part)
+                      : now->frame > before->frame || (now->frame == before->frame && now->part > before->part);
+    uint8_t i;
+    if (lap && (!seam->known || seam->yaw)) return 0;
+    for (i = 0; i < 2; i++) {
+        int32_t over = (int32_t)(uint32_t)(uint64_t)seam->place[i];
+        way[i] = difference(now->place[i], before->place[i]);
+        if (lap) way[i] = forward ? sum(way[i], over) : difference(way[i], over);
+    }
+    return 1;
+}
+
+/* Lets the second clip lead the figure too: by a weight of its way since the update before. */
+static void lead(pantin_character *c, uint16_t weight) {
+    pantin_animator *a = &c->animator;
+    const pantin_track *tracks[2];
+    pantin_clip_instant now[2];
+    int32_t ways[2][2];
+    int64_t way[2];
+    int forward = a->track.speed >= 0;
+    uint8_t i;
+    tracks[0] = &a->track;
+    tracks[1] = c->second;
+    for (i = 0; i < 2; i++) {
+        now[i].frame = frame_of(tracks[i]);
+        now[i].part = pantin_animator_part(tracks[i]);
+    }
+    memcpy(now[0].place, a->place, sizeof now[0].place);
+    root_place(a, c->second, now[1].place);
+    if (c->led && way_between(&c->instants[0], &now[0], &a->track.seam, forward, ways[0]) &&
+        way_between(&c->instants[1], &now[1], &c->second->seam, forward, ways[1])) {
+        pantin_animator_rotate(&a->lap_heading, weighted(difference(ways[1][0], ways[0][0]), weight), weighted(difference(ways[1][1], ways[0][1]), weight), way);
+        for (i = 0; i < 2; i++) a->origin[i] = wide_sum(a->origin[i], (int64_t)(0u - (uint64_t)way[i]));
+        locate(a);
+    }
+    memcpy(c->instants, now, sizeof now);
+    c->led = 1;
 }
 
 /* Brings the second clip in step with the first by the footsteps of both, and lets the first play at a speed between the two. */
@@ -1878,18 +2007,20 @@ static pantin_result keep_step(pantin_character *c, const pantin_state_row *row,
     its = (int64_t)other * second->clip.frame_time_ns;
     mixed = time + (((its - time) * weight) >> 15);
     set_speed(own, (int32_t)(mixed ? clamp(time * row->speed / mixed, -4 * PANTIN_SPEED, 4 * PANTIN_SPEED) : 0));
+    set_speed(second, (int32_t)(mixed ? clamp(its * row->speed / mixed, -4 * PANTIN_SPEED, 4 * PANTIN_SPEED) : 0));
     at = in_step(own, &second->clip, frame_of(second));
     if (at < 0) return PANTIN_NOT_FOUND;
     result = seek_track(second, (uint32_t)(at >> 16));
     second->rest = (at & 0xffff) * second->clip.frame_time_ns;
-    return result == PANTIN_OK && second->rest ? close_loop(second, NULL) : result;
+    if (result == PANTIN_OK && second->rest) result = close_loop(second, NULL);
+    if (result == PANTIN_OK && own->clip.looped && second->clip.looped) lead(c, weight);
+    return result;
 }
 
 /* Mixes the second clip of a state that blends in. */
 static pantin_result blend(pantin_character *c) {
     pantin_state_row row;
     pantin_result result;
-    uint16_t weight;
     pantin_animator_read_state(c, c->state, &row);
     if (row.other == PANTIN_NO_CLIP) return PANTIN_OK;
     if (!c->second) return c->without & PANTIN_WITHOUT_BLENDS ? PANTIN_OK : PANTIN_UNSUPPORTED;
@@ -1897,12 +2028,18 @@ static pantin_result blend(pantin_character *c) {
         pantin_clip clip;
         result = open_clip(c, row.other, &clip);
         if (result == PANTIN_OK) result = start_track(c->second, &clip, c->animator.channels, 0, row.speed);
+        if (result == PANTIN_OK && clip.looped) {
+            /* Where a lap takes the root. */
+            result = go_to(c->second, 0xffffffffu);
+            if (result == PANTIN_OK) result = lap(c->second, &c->animator);
+        }
         if (result != PANTIN_OK) return result;
         c->blending = 1;
+        c->led = 0;
+        c->mixed = row.follow ? 0 : weight_of(c, row.parameter);
     }
-    weight = pantin_animator_weight(c, row.parameter);
-    result = keep_step(c, &row, weight);
-    return result == PANTIN_OK ? mix(&c->animator, c->second, weight) : result;
+    result = keep_step(c, &row, c->mixed);
+    return result == PANTIN_OK ? mix(&c->animator, c->second, c->mixed) : result;
 }
 
 /* ---- Transitions of the machine ---- */
@@ -1945,19 +2082,28 @@ static pantin_result make(pantin_character *c, uint32_t transition, uint32_t fra
     pantin_clip clip;
     pantin_state_row row;
     pantin_result result;
+    change how;
     pantin_animator_read_state(c, to, &row);
     result = open_clip(c, row.clip, &clip);
+    /* The pose of this instant, of which it has the first clip's part alone. */
+    if (result == PANTIN_OK && c->blending) result = blend(c);
     if (result != PANTIN_OK) return result;
     if (frame == ROW_FRAME) {
         /* Without footsteps it begins at its first frame. */
         int64_t instant = first == IN_STEP ? in_step(&a->track, &clip, 0) : (int64_t)first << 16;
         frame = instant < 0 ? 0 : (uint32_t)(instant >> 16);
     }
-    result = go_over(a, &clip, begun(frame, &clip, row.speed), row.speed, (pantin_transition)table_byte(c, at + 5), table_byte(c, at + 6));
+    how.frame = begun(frame, &clip, row.speed);
+    how.speed = row.speed;
+    how.kind = (pantin_transition)table_byte(c, at + 5);
+    how.frames = table_byte(c, at + 6);
+    how.second = c->blending ? c->second : NULL;
+    how.weight = how.second ? c->mixed : 0;
+    result = go_over(a, &clip, &how);
     if (result != PANTIN_OK) return result;
     c->state = to;
     c->waiting = PANTIN_NO_TRANSITION;
-    c->blending = 0;
+    c->blending = c->led = 0;
     c->entered = 1;
     return PANTIN_OK;
 }
@@ -2129,7 +2275,7 @@ pantin_result pantin_character_layer(pantin_character *c, pantin_layer *layer, p
     memset(layer, 0, sizeof *layer);
     layer->clip = table_byte(c, at);
     layer->input = table_byte(c, at + 1);
-    layer->fade_us = table_byte(c, at + 2) * (uint32_t)15625;
+    layer->fade_us = table_byte(c, at + 2) * UNIT_US;
     for (i = 0; i < 8; i++) layer->states |= (uint64_t)table_byte(c, at + 4 + i) << (8 * i);
     layer->sampled = sampled;
     layer->words = words;
@@ -2255,12 +2401,14 @@ static pantin_result start_second_again(pantin_character *c) {
     int32_t speed = own->speed;
     uint8_t ended = own->ended;
     uint32_t frame = frame_of(c->second);
+    pantin_seam seam = c->second->seam;
     pantin_clip clip;
     pantin_state_row row;
     pantin_result result;
     pantin_animator_read_state(c, c->state, &row);
     result = open_clip(c, row.other, &clip);
     if (result == PANTIN_OK) result = start_track(c->second, &clip, c->animator.channels, frame, row.speed);
+    c->second->seam = seam;
     if (result == PANTIN_OK) result = blend(c);
     /* Both are those of the update before until this one ends. */
     own->speed = speed;
@@ -2315,6 +2463,7 @@ pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) 
     c->animator.event_count = 0;
     c->animator.lost = 0;
     c->entered = 0;
+    follow(c, elapsed_us);
     result = run(c, (uint64_t)elapsed_us * 1000);
     c->seen = c->fired | c->held;
     c->fired = 0;

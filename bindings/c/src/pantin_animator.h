@@ -104,7 +104,8 @@ typedef struct pantin_animator {
     uint32_t lost;              /* events that found the queue full */
     uint16_t group_count, channels;
     uint16_t carrier;           /* index of the joint that carries the figure */
-    uint8_t left;               /* frames of the transition that are left */
+    uint8_t left;               /* frames of the transition that are left, and when velocities have died out, if that is before its end */
+    uint8_t left_then;
     uint8_t carried;            /* 1 while a transition advances by whole frames together with the clip, and by how many it has */
     uint8_t carried_frames;
     uint8_t event_count;
@@ -172,6 +173,13 @@ typedef struct pantin_layer {
     uint8_t clip, input, doing;
 } pantin_layer;
 
+/* Where a clip is, and its root. */
+typedef struct pantin_clip_instant {
+    uint32_t frame;
+    uint16_t part;
+    int32_t place[2];
+} pantin_clip_instant;
+
 struct pantin_feet;
 struct pantin_feet_calls;
 
@@ -188,6 +196,9 @@ typedef struct pantin_character {
     uint8_t state;
     uint8_t entered;            /* 1 if the last update entered a state */
     uint8_t blending, without, layer_count;
+    uint8_t led;                /* 1 if `instants` are those of the update before */
+    uint16_t mixed;             /* how much of the second clip is mixed in, in 2^-15 */
+    pantin_clip_instant instants[2];
     uint8_t waiting;            /* a transition that waits for a matching foot, or 255 */
     uint8_t needs_feet;         /* 1 if the bank has feet that were not declared absent */
     struct pantin_feet *feet;   /* of pantin_feet.h; NULL before pantin_character_feet */

@@ -17,9 +17,9 @@ enum { PANTIN_FEET_SECTION = 5 };
 /* No transition waits. */
 #define PANTIN_NO_TRANSITION 255u
 
-/* A row of the table's states: speed is in 2^-16. */
+/* A row of the table's states: speed is in 2^-16, the time in which a blend follows its parameter in 1/64 s. */
 typedef struct pantin_state_row {
-    uint8_t clip, other, parameter, first, count;
+    uint8_t clip, other, parameter, follow, first, count;
     int32_t speed;
 } pantin_state_row;
 
@@ -37,9 +37,6 @@ typedef struct pantin_feet_calls {
 } pantin_feet_calls;
 
 void pantin_animator_read_state(const pantin_character *character, uint8_t state, pantin_state_row *row);
-
-/* How much of the second clip a parameter mixes in, in 2^-15. */
-uint16_t pantin_animator_weight(const pantin_character *character, uint8_t parameter);
 
 /* How far a track is on the way from its frame to the next, in 2^-16. */
 uint16_t pantin_animator_part(const pantin_track *track);

@@ -282,10 +282,17 @@ static void turn_between(const int32_t *from_a, const int32_t *from_b, const int
 /* The axis about which a knee bends; a straight one bends as it did, or else across the way to its target. Returns 1 if it is bent. */
 static int knee_axis(pantin_foot_state *s, located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
     static const int32_t aside[3] = {32768, 0, 0};
-    int32_t back[3][3], sine;
+    int32_t back[3][3], known[3], sine;
+    uint8_t shows;
     pantin_figure_cross(thigh, shin, axis);
-    /* At least 2 degrees show it. */
-    if (pantin_figure_aim_along(axis, &sine) && sine > ONE / 28) {
+    /* At least 2 degrees show it; but not one that is stretched beyond that: bent the other way, and less than it was seen bent. */
+    shows = pantin_figure_aim_along(axis, &sine) && sine > ONE / 28;
+    if (s->bent) {
+        pantin_figure_apply(knee->rotation, s->hinge, known);
+        if (shows && sine <= s->most) shows = pantin_figure_dot(axis, known) >= 0;
+    }
+    if (shows) {
+        if (!s->bent || sine > s->most) s->most = sine;
         memcpy(back, knee->rotation, sizeof back);
         transpose(back);
         pantin_figure_apply(back, axis, s->hinge);
@@ -293,7 +300,7 @@ static int knee_axis(pantin_foot_state *s, located *knee, const int32_t *thigh, 
         return 1;
     }
     if (s->bent) {
-        pantin_figure_apply(knee->rotation, s->hinge, axis);
+        memcpy(axis, known, sizeof known);
         return 0;
     }
     pantin_figure_cross(way, aside, axis);
@@ -620,11 +627,17 @@ static uint8_t contact_of(const pantin_character *c, const pantin_feet *f, uint8
 /* See pantin_feet_calls. */
 static int next_entry(const pantin_character *c, uint8_t transition, uint32_t *frame, uint64_t *ns) {
     const pantin_feet *f = c->feet;
-    const pantin_track *t = &c->animator.track;
+    const pantin_animator *a = &c->animator;
+    const pantin_track *t = &a->track;
     uint16_t part = pantin_animator_part(t), entry;
-    uint32_t behind = part != 0, from = t->player.frame + behind, nearest = 0xffffffffu;
+    uint32_t behind, from, nearest = 0xffffffffu;
     uint64_t way;
     if (t->speed <= 0) return 0;
+    /* Not before the transition that runs has ended: in 2^-16 of a frame. */
+    way = ((uint64_t)a->left << 16) - ((uint64_t)a->rest_ns << 16) / t->clip.frame_time_ns;
+    behind = (uint32_t)((part + (way * (uint32_t)t->speed >> 16) + 0xffff) >> 16);
+    from = t->player.frame + behind;
+    if (t->clip.looped) from %= t->clip.frames;
     for (entry = 0; entry < f->entries; entry++) {
         uint32_t row = entry_at(f, entry), at, ahead;
         if (table_byte(c, f, row) != transition) continue;
@@ -1007,11 +1020,10 @@ static pantin_result correct(pantin_character *c, uint32_t elapsed_us) {
     uint8_t contacts[PANTIN_FEET], i;
     if (f->stale || (c->entered && (f->exponent != a->track.clip.exponent || f->coding != a->track.clip.coding))) result = find_legs(f, a);
     if (result != PANTIN_OK) return result;
-    for (i = 0; i < f->count && c->entered; i++) f->feet[i].state.bent = 0;
     f->stale = 0;
     /* Of two clips that are blended the figure has the feet of the one that there is more of. */
     pantin_animator_read_state(c, c->state, &row);
-    if (c->second && c->blending && row.other != PANTIN_NO_CLIP && pantin_animator_weight(c, row.parameter) > 1u << 14) {
+    if (c->second && c->blending && row.other != PANTIN_NO_CLIP && c->mixed > 1u << 14) {
         row.clip = row.other;
         frame = c->second->player.frame;
     }

@@ -47,7 +47,8 @@ typedef struct pantin_foot_state {
     uint32_t since_us[2]; /* since the foot was let go, and since its height was */
     uint32_t step_us;     /* the time in which it comes to its clip's place */
     int32_t lift;         /* how high it is lifted on its way back */
-    int32_t hinge[3];     /* the axis about which the knee bends, in its own axes */
+    int32_t hinge[3];     /* the axis about which the knee bends, in its own axes, and the sine of the greatest bend that it was seen at */
+    int32_t most;
     uint8_t doing, point; /* whether it is held, and at which point: 0 is the ankle */
     uint8_t before;       /* the point that was on the ground at the last update, or 255 */
     uint8_t level;        /* 1 while the height stays too */

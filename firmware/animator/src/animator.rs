@@ -32,8 +32,10 @@ pub struct Animator<'a, 'm> {
     pub(crate) pose: &'m mut [i32],
     pub(crate) groups: &'m mut [Group],
     pub(crate) used_groups: usize,
-    /// Frames of the transition that are left, and the time in the frame that runs, in ns.
+    /// Frames of the transition that are left, and how many are when velocities have died out, if that is before its end; the time in the frame that
+    /// runs, in ns.
     pub(crate) left: u8,
+    pub(crate) left_then: u8,
     pub(crate) rest_ns: u32,
     pub(crate) carried: Option<Carried>,
     /// Index of the joint that carries the figure.
@@ -84,6 +86,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             groups,
             used_groups,
             left: 0,
+            left_then: 0,
             rest_ns: 0,
             carried: None,
             carrier,
@@ -199,7 +202,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         increment
     }
 
-    fn transition_part(&self) -> U0F16 {
+    pub(crate) fn transition_part(&self) -> U0F16 {
         let frame_time = u64::from(self.track.clip().frame_time_ns());
         U0F16::from_bits((u64::from(self.rest_ns) << 16).checked_div(frame_time).unwrap_or(0) as u16)
     }
@@ -296,8 +299,14 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.locate();
     }
 
+    /// Whether the cubics are solved again with so many frames left.
+    #[inline(always)]
+    pub(crate) fn solves_at(&self, left: u8) -> bool {
+        left == self.left_then || (AGAIN.contains(&left) && (left < self.left_then || self.left_then == 0))
+    }
+
     pub(crate) fn solve_again(&mut self) {
-        if AGAIN.contains(&self.left) {
+        if self.left > 0 && self.solves_at(self.left) {
             Cubic::new(self.left).solve_all(self.offsets);
         }
     }

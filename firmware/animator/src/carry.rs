@@ -7,7 +7,7 @@
 use crate::animator::Animator;
 use crate::layer::Weight;
 use crate::track::Passage;
-use crate::transition::{AGAIN, Cubic, Offset};
+use crate::transition::{Cubic, Offset};
 use fixed::types::I16F16;
 use pantin::ChannelState;
 
@@ -67,7 +67,7 @@ impl Animator<'_, '_> {
     pub(crate) fn step_within_carried(&mut self) -> bool {
         let Some(mut carried) = self.carried.filter(|_| self.left > FEW + 1 && self.may_carry(1, 0)) else { return false };
         let left = self.left - 1;
-        if AGAIN.contains(&left) {
+        if self.solves_at(left) {
             return false;
         }
         self.left = left;
@@ -94,7 +94,7 @@ impl Animator<'_, '_> {
         self.track.set_rest(rest_ns);
         if self.left == 0 {
             self.drop_carried();
-        } else if frames > 0 && AGAIN.contains(&self.left) {
+        } else if frames > 0 && self.solves_at(self.left) {
             if rest_ns == 0 && !carried.others {
                 self.solve_carried(carried);
             } else {
@@ -111,7 +111,7 @@ impl Animator<'_, '_> {
     fn may_carry(&self, frames: u8, rest_ns: u32) -> bool {
         let Some(left) = self.left.checked_sub(frames) else { return false };
         let lasts = self.left > FEW || (self.carried.is_some() && rest_ns == 0);
-        let solved = frames > 1 && AGAIN.into_iter().any(|at| self.left > at && left < at);
+        let solved = frames > 1 && (left + 1..self.left).any(|at| self.solves_at(at));
         lasts && !solved && self.track.frame() + u32::from(frames) + 1 < self.track.clip().frames()
     }
 
@@ -252,7 +252,7 @@ mod tests {
                     }
                     player.step();
                     offsets.iter_mut().for_each(Offset::step);
-                    if AGAIN.contains(&left) {
+                    if left > 0 && animator.solves_at(left) {
                         offsets.iter_mut().for_each(|offset| Cubic::new(left).solve(offset));
                     }
                     carried += u32::from(animator.carried.is_some());

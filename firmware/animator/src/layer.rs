@@ -24,6 +24,11 @@ impl Weight {
         self.0
     }
 
+    /// What is left beside it.
+    pub(crate) const fn rest(self) -> Weight {
+        Weight((1 << 15) - self.0)
+    }
+
     /// A difference times the weight, rounded down; times 1 it is exact.
     #[inline(always)]
     pub(crate) fn of(self, difference: i32) -> i32 {

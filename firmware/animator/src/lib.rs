@@ -84,6 +84,7 @@ mod feet;
 mod foot;
 mod groups;
 pub mod layer;
+mod lead;
 mod look;
 pub mod machine;
 mod mask;

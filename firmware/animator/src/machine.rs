@@ -25,6 +25,7 @@
 use crate::animator::Animator;
 use crate::events::EventsLost;
 use crate::layer::Weight;
+use crate::lead::Instants;
 pub use crate::table::{
     Cause, Contact, Entry, FEET, FEET_SECTION, FEET_VERSION, FeetTable, FootRow, INPUTS, LAYERS, LayerRow, PARAMETERS, POINTS,
     SECTION, STATES, StateRow, Table, TableError, TransitionRow, VERSION,
@@ -34,7 +35,7 @@ use crate::{Error, sync};
 use fixed::types::I16F16;
 use pantin::{Bank, BankEntries, Clip, OpenError};
 
-/// What a machine remembers: less than 64 bytes.
+/// What a machine remembers: at most 112 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Machine<'a> {
     table: Table<'a>,
@@ -48,12 +49,16 @@ pub struct Machine<'a> {
     state: u8,
     /// Whether the second track plays this state's second clip.
     blending: bool,
+    /// How much of that clip is mixed in.
+    mixed: Weight,
+    /// Where both clips were in the last update, if they are in step.
+    led: Option<Instants>,
     /// The transition that waits for a matching foot.
     waiting: Option<u8>,
 }
 
 /// A table of feet, and [`next_entry`], so that programs without feet have none of that.
-pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, &Track<'_, '_>) -> Option<(u32, u64)>);
+pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, &Animator<'_, '_>) -> Option<(u32, u64)>);
 
 /// How often the state changes in one instant, and at how many instants in the middle of an update, at most.
 const CHANGES: usize = 4;
@@ -97,6 +102,8 @@ impl<'a> Machine<'a> {
             held_before: 0,
             state: table.first(),
             blending: false,
+            mixed: Weight::ZERO,
+            led: None,
             waiting: None,
         }
     }
@@ -185,6 +192,7 @@ impl<'a> Machine<'a> {
         animator: &mut Animator<'b, '_>,
         second: Option<&mut Track<'b, '_>>,
     ) -> Result<Updated, Error> {
+        self.follow(elapsed_us);
         let updated = self.run(entries, u64::from(elapsed_us) * 1000, bank, animator, second);
         (self.seen, self.fired, self.held_before) = (self.fired | self.held, 0, self.held);
         updated
@@ -205,7 +213,7 @@ impl<'a> Machine<'a> {
             heard = animator.events().iter().count();
             let entry = self
                 .waiting
-                .and_then(|waiting| entries.and_then(|(table, find)| Some((waiting, find(&table, waiting, animator.track())?))));
+                .and_then(|waiting| entries.and_then(|(table, find)| Some((waiting, find(&table, waiting, animator)?))));
             let entry = entry.filter(|(_, (_, ns))| *ns < left_ns);
             let whole_ns = entry.map_or(left_ns, |(_, (_, ns))| ns);
             let (rest_ns, outcome) = animator.play(whole_ns);
@@ -215,18 +223,21 @@ impl<'a> Machine<'a> {
                 break;
             }
             if let Some((waiting, (frame, _))) = entry {
-                updated.entered = self.make(waiting.into(), Some(frame), bank, animator)?.or(updated.entered);
+                updated.entered =
+                    self.make(waiting.into(), Some(frame), bank, animator, second.as_deref_mut())?.or(updated.entered);
                 self.blend(bank, animator, second.as_deref_mut())?;
                 continue;
             }
-            let Some(state) = self.enter_all(entries, before, before, heard, bank, animator)? else { break };
+            let Some(state) = self.enter_all(entries, before, before, heard, bank, animator, second.as_deref_mut())? else {
+                break;
+            };
             updated.entered = Some(state);
             self.blend(bank, animator, second.as_deref_mut())?;
         }
         animator.hold(left_ns);
         let (fired, held) = (self.fired, Inputs { down: self.held, up: !self.held });
         let now = Inputs { down: fired | held.down, up: held.up };
-        updated.entered = self.enter_all(entries, now, held, heard, bank, animator)?.or(updated.entered);
+        updated.entered = self.enter_all(entries, now, held, heard, bank, animator, second.as_deref_mut())?.or(updated.entered);
         self.blend(bank, animator, second)?;
         Ok(updated)
     }
@@ -241,13 +252,14 @@ impl<'a> Machine<'a> {
         heard: usize,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
+        mut second: Option<&mut Track<'b, '_>>,
     ) -> Result<Option<u8>, Error> {
         let (mut inputs, mut heard, mut last) = (first, heard, None);
         // Conditions that contradict each other change the state once.
         let mut been = 0;
         for _ in 0..CHANGES {
             been |= state_bit(self.state);
-            let Some(state) = self.enter(entries, inputs, heard, been, bank, animator)? else { break };
+            let Some(state) = self.enter(entries, inputs, heard, been, bank, animator, second.as_deref_mut())? else { break };
             (inputs, heard, last) = (then, animator.events().iter().count(), Some(state));
         }
         Ok(last)
@@ -263,6 +275,7 @@ impl<'a> Machine<'a> {
         been: u64,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
+        second: Option<&mut Track<'b, '_>>,
     ) -> Result<Option<u8>, Error> {
         let Some(now) = self.table.state(self.state) else { return Ok(None) };
         let own = usize::from(now.transitions.0)..usize::from(now.transitions.0) + usize::from(now.transitions.1);
@@ -280,11 +293,11 @@ impl<'a> Machine<'a> {
         let wanted = wanted.filter(|index| waiting.is_none_or(|waiting| *index < waiting));
         let ended = waiting.filter(|_| animator.track().ended());
         let Some(wanted) = wanted.or(ended) else { return Ok(None) };
-        if ended.is_none() && entries.is_some_and(|(table, find)| find(&table, wanted as u8, animator.track()).is_some()) {
+        if ended.is_none() && entries.is_some_and(|(table, find)| find(&table, wanted as u8, animator).is_some()) {
             self.waiting = Some(wanted as u8);
             return Ok(None);
         }
-        self.make(wanted, None, bank, animator)
+        self.make(wanted, None, bank, animator, second)
     }
 
     /// Makes a transition, to a frame of the new clip or to that which its row names. Returns the new state.
@@ -294,6 +307,7 @@ impl<'a> Machine<'a> {
         frame: Option<u32>,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
+        mut second: Option<&mut Track<'b, '_>>,
     ) -> Result<Option<u8>, Error> {
         let Some(wanted) = self.table.transition(index) else { return Ok(None) };
         let Some(row) = self.table.state(wanted.to) else { return Ok(None) };
@@ -308,8 +322,13 @@ impl<'a> Machine<'a> {
             }
         };
         let frame = begun(frame, &clip, row.speed);
-        animator.switch(clip, frame, row.speed, wanted.transition)?;
-        (self.state, self.blending, self.waiting) = (wanted.to, false, None);
+        if self.blending {
+            // The pose of this instant, of which it has the first clip's part alone.
+            self.blend(bank, animator, second.as_deref_mut())?;
+        }
+        let mixed = second.as_deref().filter(|_| self.blending).map(|second| (second, self.mixed));
+        animator.switch_mixed(mixed, clip, frame, row.speed, wanted.transition)?;
+        (self.state, self.blending, self.led, self.waiting) = (wanted.to, false, None, None);
         Ok(Some(wanted.to))
     }
 
@@ -331,12 +350,22 @@ impl<'a> Machine<'a> {
         Weight::from_bits((way << 15).checked_div(whole).unwrap_or(0).clamp(0, 1 << 15) as u16)
     }
 
+    /// Lets the blend follow its parameter.
+    fn follow(&mut self, elapsed_us: u32) {
+        let Some(row) = self.table.state(self.state).filter(|_| self.blending) else { return };
+        let Some((_, parameter)) = row.blend else { return };
+        let step = (u64::from(elapsed_us) << 15).div_ceil(u64::from(row.follow_us).max(1)).min(1 << 15) as u16;
+        let (now, to) = (self.mixed.to_bits(), self.weight(parameter).to_bits());
+        let to = if row.follow_us == 0 { to } else { to.clamp(now.saturating_sub(step), now.saturating_add(step)) };
+        self.mixed = Weight::from_bits(to);
+    }
+
     /// The clip, and its frame, whose feet the figure has: of two that are blended the one that there is more of.
     pub(crate) fn on_the_ground(&self, animator: &Animator<'_, '_>, second: Option<&Track<'_, '_>>) -> (u8, u32) {
         let row = self.table.state(self.state);
         let other = row.and_then(|row| row.blend).filter(|_| self.blending);
         match (other, second) {
-            (Some((clip, parameter)), Some(track)) if self.weight(parameter).to_bits() > 1 << 14 => (clip, track.frame()),
+            (Some((clip, _)), Some(track)) if self.mixed.to_bits() > 1 << 14 => (clip, track.frame()),
             _ => (row.map_or(0, |row| row.clip), animator.track().frame()),
         }
     }
@@ -352,18 +381,29 @@ impl<'a> Machine<'a> {
         let Some((other, parameter)) = row.blend else { return Ok(()) };
         if !self.blending {
             second.start(clip(bank, other)?, 0, row.speed)?;
-            self.blending = true;
+            if second.clip().looped() {
+                second.begin_lap(&animator.root);
+            }
+            (self.blending, self.mixed, self.led) =
+                (true, if row.follow_us == 0 { self.weight(parameter) } else { Weight::ZERO }, None);
         }
-        let weight = self.weight(parameter);
+        let weight = self.mixed;
         let strides = (sync::stride(animator.track().clip()), sync::stride(second.clip()));
         if let (Ok(own), Ok(its)) = strides {
             // The stride takes a time between those of the two clips, whatever their frame rates.
             let time = |stride: u32, clip: &Clip<'_>| i64::from(stride) * i64::from(clip.frame_time_ns());
             let (own, its) = (time(own, animator.track().clip()), time(its, second.clip()));
             let mixed = own + (((its - own) * i64::from(weight.to_bits())) >> 15);
-            let speed = (own.saturating_mul(i64::from(row.speed.to_bits()))).checked_div(mixed).unwrap_or(0);
-            animator.set_speed(I16F16::from_bits(speed.clamp(-(4 << 16), 4 << 16) as i32));
+            let speed = |time: i64| {
+                let speed = (time.saturating_mul(i64::from(row.speed.to_bits()))).checked_div(mixed).unwrap_or(0);
+                I16F16::from_bits(speed.clamp(-(4 << 16), 4 << 16) as i32)
+            };
+            animator.set_speed(speed(own));
+            second.set_speed(speed(its));
             second.sync_to(animator.track())?;
+            if animator.track().clip().looped() && second.clip().looped() {
+                self.led = Some(animator.lead(second, weight, self.led));
+            }
         } else {
             second.seek(animator.track().frame());
         }
@@ -372,17 +412,24 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// The frame at which the transition that waits begins in the new clip, and the time in ns until then; `None` if none waits, or if no such instant
-/// comes.
-pub(crate) fn next_entry(table: &FeetTable<'_>, transition: u8, track: &Track<'_, '_>) -> Option<(u32, u64)> {
+/// The frame at which the transition that waits begins in the new clip, and the time in ns until then, which is not before the one that runs has ended;
+/// `None` if none waits, or if no such instant comes.
+pub(crate) fn next_entry(table: &FeetTable<'_>, transition: u8, animator: &Animator<'_, '_>) -> Option<(u32, u64)> {
+    let (track, left) = (animator.track(), animator.transition_left());
     let speed = track.speed().to_bits();
     if speed <= 0 {
         return None;
     }
     let clip = track.clip();
-    let behind = u32::from(track.part().to_bits() != 0);
-    let (entry, ahead) = table.next_entry(transition, track.frame() + behind, clip.frames(), clip.looped())?;
-    let way = (u64::from(ahead + behind) << 16).saturating_sub(u64::from(track.part().to_bits()));
+    let part = u64::from(track.part().to_bits());
+    // In 2^-16 of a frame, and below 2^27 and 2^29.
+    let rest = (u64::from(left) << 16).saturating_sub(u64::from(animator.transition_part().to_bits()));
+    let ended = part + ((rest * u64::from(speed.unsigned_abs())) >> 16);
+    let behind = ended.div_ceil(1 << 16) as u32;
+    let from = track.frame() + behind;
+    let from = if clip.looped() { from.checked_rem(clip.frames()).unwrap_or(0) } else { from };
+    let (entry, ahead) = table.next_entry(transition, from, clip.frames(), clip.looped())?;
+    let way = (u64::from(ahead + behind) << 16).saturating_sub(part);
     // Below 2^33 times 2^30, and rounded up so that the frame is reached.
     let ns = way.saturating_mul(u64::from(clip.frame_time_ns())).div_ceil(u64::from(speed.unsigned_abs()));
     Some((entry.start.into(), ns))

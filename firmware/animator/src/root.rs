@@ -392,6 +392,13 @@ impl Travel {
         }
     }
 
+    /// Lets the figure go a way of the clip's axes beside the clip.
+    pub(crate) fn lead(&mut self, way: [i32; 2]) {
+        for (origin, way) in self.origin.iter_mut().zip(self.lap_heading.rotate(way)) {
+            *origin = origin.wrapping_sub(way);
+        }
+    }
+
     /// The placement of a root that is at a place of its clip.
     pub(crate) fn placement(&self, place: [i32; 2], seam: Option<&Seam>) -> Placement {
         let [x, y] = place;

@@ -3,9 +3,11 @@
 use crate::Error;
 use crate::animator::Animator;
 use crate::groups::{self, Group, Shape, nearest};
+use crate::layer::Weight;
 use crate::math::{self, Unit};
 use crate::root::{Heading, Placement, Root, Travel};
-use crate::transition::{Cubic, Offset, Transition};
+use crate::track::Track;
+use crate::transition::{Cubic, Offset, Transition, swing};
 use fixed::types::I16F16;
 use pantin::{Angle, Clip, FormRef, Joint, WrongForm};
 
@@ -16,8 +18,20 @@ impl<'a> Animator<'a, '_> {
     /// On an error the old clip plays on, and a transition that ran has ended.
     ///
     /// A clip of another form costs a conversion of the joints that it codes in another way, at this instant alone; its pose has its own form.
-    #[inline(never)]
     pub fn switch(&mut self, clip: Clip<'a>, frame: u32, speed: I16F16, transition: Transition) -> Result<(), Error> {
+        self.switch_mixed(None, clip, frame, speed, transition)
+    }
+
+    /// [`Animator::switch`] from a pose into which a weight of a second clip was mixed.
+    #[inline(never)]
+    pub(crate) fn switch_mixed(
+        &mut self,
+        mixed: Option<(&Track<'a, '_>, Weight)>,
+        clip: Clip<'a>,
+        frame: u32,
+        speed: I16F16,
+        transition: Transition,
+    ) -> Result<(), Error> {
         let (old_form, new_form) = (self.form(), clip.form_ref());
         if old_form.rig_id() != new_form.rig_id() {
             return Err(WrongForm::Rig.into());
@@ -27,7 +41,7 @@ impl<'a> Animator<'a, '_> {
         let (converts, frames) = (old_form != new_form, transition.frames());
         let turned_before = self.root.turn_in(&self.pose());
         let yaw_before = self.root.yaw_of(turned_before);
-        self.take_motion(&clip);
+        self.take_motion(&clip, mixed);
         if let Err(error) = self.track.start(clip, frame, speed) {
             self.left = 0;
             self.compose();
@@ -87,11 +101,8 @@ impl<'a> Animator<'a, '_> {
     }
 
     /// Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset.
-    fn take_motion(&mut self, clip: &Clip<'a>) {
-        // How much of a frame of the old clip passes in one of the new, in 2^-16.
-        let (old, new) = (self.track.clip().frame_time_ns(), clip.frame_time_ns());
-        let ratio =
-            if new == old { 1 << 16 } else { (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64 };
+    fn take_motion(&mut self, clip: &Clip<'a>, mixed: Option<(&Track<'a, '_>, Weight)>) {
+        let ratio = ratio(self.track.clip(), clip);
         self.track.leave_offsets();
         let running = self.left > 0;
         for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
@@ -99,9 +110,18 @@ impl<'a> Animator<'a, '_> {
             (offset.d, offset.v) = (*value, value.wrapping_add(own));
         }
         let speed = (i64::from(self.track.speed().to_bits()) * ratio) >> 16;
+        let (second, weight) = mixed.unzip();
+        let own = |v: i32| weight.map_or(v, |weight| weight.rest().of(v));
         for (slot, v) in self.track.velocities() {
             if let Some(offset) = self.offsets.get_mut(slot) {
-                offset.v = offset.v.wrapping_add(scaled(v, speed));
+                offset.v = offset.v.wrapping_add(scaled(own(v), speed));
+            }
+        }
+        let (Some(second), Some(weight)) = (second, weight) else { return };
+        let speed = (i64::from(second.speed().to_bits()) * self::ratio(second.clip(), clip)) >> 16;
+        for (slot, v) in second.velocities() {
+            if let Some(offset) = self.offsets.get_mut(slot) {
+                offset.v = offset.v.wrapping_add(scaled(weight.of(v), speed));
             }
         }
     }
@@ -156,14 +176,22 @@ impl<'a> Animator<'a, '_> {
 
     /// Lets the differences die out in a number of frames of the new clip.
     fn start_transition(&mut self, frames: u8) {
-        (self.left, self.rest_ns) = (frames, 0);
+        let swing = swing(frames, self.track.clip().frame_time_ns());
+        (self.left, self.left_then, self.rest_ns) = (frames, swing.map_or(0, |few| frames - few), 0);
+        let cubic = Cubic::new(frames);
+        if let Some(few) = swing {
+            let fast = Cubic::new(few);
+            self.offsets.iter_mut().for_each(|offset| cubic.solve_apart(&fast, offset));
+        } else {
+            cubic.solve_all(self.offsets);
+        }
         // The figure keeps its place: only the root's velocity dies out, and where it carries the root is added to the way.
         for channel in self.root.place.into_iter().flatten() {
             if let Some(offset) = self.offsets.get_mut(usize::from(channel)) {
                 offset.coast(frames);
+                cubic.solve(offset);
             }
         }
-        Cubic::new(frames).solve_all(self.offsets);
     }
 
     /// Brings the kept poses from one form to another.
@@ -236,6 +264,12 @@ fn is_near(shape: Shape, own: &[Offset], to: &[i32]) -> bool {
     // Maps do not wrap.
     let wraps = |own: Offset, to: i32| own.d.checked_sub(to).is_none() | own.v.checked_sub(own.d).is_none();
     near(a, x) && near(b, y) && near(c, z) && !(shape == Shape::Map && (wraps(a, x) | wraps(b, y) | wraps(c, z)))
+}
+
+/// How much of a frame of one clip passes in one of another, in 2^-16.
+fn ratio(of: &Clip<'_>, clip: &Clip<'_>) -> i64 {
+    let (old, new) = (of.frame_time_ns(), clip.frame_time_ns());
+    if new == old { 1 << 16 } else { (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64 }
 }
 
 /// A velocity times a factor in 2^-16.

@@ -211,6 +211,15 @@ impl<'a, 'm> Track<'a, 'm> {
         self.pose
     }
 
+    /// A channel of this instant.
+    pub(crate) fn value(&self, slot: usize) -> i32 {
+        let value = self.pose.get(slot).copied().unwrap_or(0);
+        let states = self.states.get(..self.player.moving_channels()).unwrap_or_default();
+        let Some(state) = states.iter().find(|state| self.rest != 0 && state.slot() == slot) else { return value };
+        let [v, ..] = state.rates();
+        value.wrapping_add(Weight::from_bits(self.part().to_bits() >> 1).of(v))
+    }
+
     /// The moving channels and the pose's values; `None` for a key clip, whose states are not moved by additions alone.
     pub(crate) fn moving(&mut self) -> Option<(&mut [ChannelState], &mut [i32])> {
         let moving = self.player.moving_channels();

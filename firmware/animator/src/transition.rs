@@ -6,8 +6,9 @@
 pub enum Transition {
     /// At once. The pose jumps; place and heading do not.
     Cut,
-    /// The difference of the poses and of their velocities dies out as a cubic in this many frames of the new clip, after which the pose is
-    /// exactly the clip's. 0 frames are a cut; 1 frame keeps the old pose for the first instant alone.
+    /// The difference of the poses dies out as a cubic in this many frames of the new clip, after which the pose is exactly the clip's; that of their
+    /// velocities in a quarter of a second at most, so that limbs do not swing past both motions, but that of the figure's way in all of them. 0 frames
+    /// are a cut; 1 frame keeps the old pose for the first instant alone.
     Inertialized(u8),
     /// The difference of the poses alone dies out: the old motion stops at once. For comparison.
     Faded(u8),
@@ -113,13 +114,22 @@ impl Ratio {
 ///
 /// With d + n v + C(n,2) w + C(n,3) k = 0 and v + n w + C(n,2) k = 0 the slope is k = 12 d / (n (n^2 - 1)) + 6 v / (n (n - 1)) and the
 /// acceleration w = -v / n - (n - 1) k / 2. Rounded, they leave up to C(n,3) / 2 raw units at the end. The cubic is therefore solved
-/// again at [`AGAIN`]; with 2 frames left the solution is whole, so that the end is exactly zero.
+/// again at [`AGAIN`], but not before velocities that die out in fewer frames have done so; with 2 frames left the solution is whole, so that the end is exactly zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cubic {
     frames: u8,
     of_d: Ratio,
     of_v: Ratio,
     inverse: Ratio,
+}
+
+/// The time in ns in which a difference of velocities dies out, at most.
+const SWING_NS: u32 = 250_000_000;
+
+/// The frames of this time each in which velocities die out during a transition that takes more of them.
+pub(crate) fn swing(frames: u8, frame_time_ns: u32) -> Option<u8> {
+    let few = SWING_NS.div_ceil(frame_time_ns.max(1)).max(2);
+    u8::try_from(few).ok().filter(|few| few.saturating_add(2) < frames)
 }
 
 /// The numbers of frames left at which the cubic is solved again.
@@ -141,6 +151,15 @@ impl Cubic {
         for offset in offsets.iter_mut().filter(|offset| **offset != Offset::ZERO) {
             self.solve(offset);
         }
+    }
+
+    /// Sets acceleration and slope so that the velocity dies out by another cubic, of fewer frames. Until then the sum of both is a cubic, too.
+    pub(crate) fn solve_apart(&self, swing: &Cubic, offset: &mut Offset) {
+        let Offset { d, v, .. } = *offset;
+        let (mut slow, mut fast) = (Offset { d, ..Offset::ZERO }, Offset { v, ..Offset::ZERO });
+        self.solve(&mut slow);
+        swing.solve(&mut fast);
+        (offset.w, offset.k) = (slow.w.wrapping_add(fast.w), slow.k.wrapping_add(fast.k));
     }
 
     /// Sets acceleration and slope by difference and velocity.
@@ -211,6 +230,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_velocity_dies_out_in_a_quarter_of_a_second() {
+        // 60 frames of 1/60 s.
+        let (few, d, v) = (swing(60, 16_666_667).unwrap(), 1 << 24, 1 << 22);
+        assert_eq!((few, swing(17, 16_666_667), swing(16, 16_666_667)), (15, None, None));
+        let mut offset = Offset { d, v, ..Offset::ZERO };
+        Cubic::new(60).solve_apart(&Cubic::new(few), &mut offset);
+        let (alone, mut most) = (runs(d, 0, 60), 0);
+        for left in (0..60u8).rev() {
+            offset.step();
+            if left == 60 - few || (left < 60 - few && AGAIN.contains(&left)) {
+                Cubic::new(left).solve(&mut offset);
+            }
+            let own = alone[usize::from(60 - left)];
+            most = most.max(offset.d - own);
+            // What rounding leaves of a cubic of 60 frames.
+            assert!(left > 60 - few || (offset.d - own).abs() <= 17_110, "{left} left: {}", offset.d - own);
+        }
+        assert_eq!((offset.d, offset.v), (0, 0));
+        // It goes as far as in a transition of a quarter of a second.
+        let short = runs(0, v, few).into_iter().max().unwrap();
+        assert!((most - short).abs() <= 17_110, "{most}, {short}");
     }
 
     #[test]

@@ -46,8 +46,8 @@ pub struct Limb<'a> {
     lower: (i32, i32),
     least: i32,
     greatest: i32,
-    /// The axis about which the middle joint bends, in its own axes: used while the limb is straight.
-    hinge: Option<Vector>,
+    /// The axis about which the middle joint bends, in its own axes, and the sine of the greatest bend that it was seen at.
+    hinge: Option<(Vector, i32)>,
 }
 
 impl<'a> Limb<'a> {
@@ -95,6 +95,11 @@ impl<'a> Limb<'a> {
     pub fn start(&self, pose: &[i32]) -> [i32; 3] {
         let [_, first, ..] = self.places(pose);
         first.place.map(|x| shifted(x, -self.chain.shift))
+    }
+
+    /// Remembers how another limb of the same joints bends.
+    pub(crate) fn bends_as(&mut self, other: &Limb<'a>) {
+        self.hinge = other.hinge;
     }
 
     /// The length of the limb when it is stretched, in the same units.
@@ -155,10 +160,14 @@ impl<'a> Limb<'a> {
         let unit = |v: Vector, (length, inverse): (i32, i32)| v.map(|x| (x.max(-length).min(length) * inverse) >> 14);
         let u = unit(sub(knee.place, hip.place), self.upper);
         let l = unit(sub(ankle.place, knee.place), self.lower);
-        // The axis of the bend: at least 2 degrees tell it, and are remembered for a straight limb.
-        let bend = cross(u, l);
-        let bent = direction(bend).filter(|(_, sine)| *sine > ONE / 28).map(|(axis, _)| axis);
-        let own = bent.or_else(|| self.hinge.map(|hinge| knee.rotation.apply(hinge)));
+        // The axis of the bend: at least 2 degrees tell it, and are remembered for a straight limb, and for one that is stretched beyond that, as in
+        // transitions: bent the other way, and less than it was seen bent.
+        let known = self.hinge.map(|(hinge, most)| (knee.rotation.apply(hinge), most));
+        let bent = direction(cross(u, l))
+            .filter(|(axis, sine)| *sine > ONE / 28 && known.is_none_or(|(known, most)| *sine > most || dot(*axis, known) >= 0));
+        let sine = bent.map_or(0, |(_, sine)| sine);
+        let bent = bent.map(|(axis, _)| axis);
+        let own = bent.or(known.map(|(axis, _)| axis));
         let axis = match (own, pole) {
             (Some(axis), _) => axis,
             // Never bent: the pole, or any direction across.
@@ -172,7 +181,8 @@ impl<'a> Limb<'a> {
             },
         };
         if bent.is_some() {
-            self.hinge = Some(pantin_math::vector::transposed(&knee.rotation).apply(axis));
+            let most = known.map_or(sine, |(_, most)| sine.max(most));
+            self.hinge = Some((pantin_math::vector::transposed(&knee.rotation).apply(axis), most));
         }
         let reached = distance.max(self.least).min(self.greatest);
         let Some((n, _)) = direction(match pole {

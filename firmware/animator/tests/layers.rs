@@ -182,7 +182,7 @@ fn a_machine_goes_from_state_to_state() {
     let (go, pace) = (table.input("go").unwrap(), table.parameter("pace").unwrap());
     assert_eq!((go, pace, table.input("stop"), table.parameter("go")), (0, 0, None, None));
     let mut machine = Machine::new(table);
-    assert!(size_of::<Machine<'_>>() <= 64);
+    assert!(size_of::<Machine<'_>>() <= 112);
     let mut memory = Workspace::<64, 64>::new();
     let mut animator = Animator::new(machine.first_clip(&bank).unwrap(), memory.lend()).unwrap();
     fn update_with<'b>(bank: &pantin::Bank<'b>, machine: &mut Machine<'b>, animator: &mut Animator<'b, '_>) -> Option<u8> {

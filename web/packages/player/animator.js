@@ -1,7 +1,7 @@
 // A figure that plays one clip after another, with transitions, root motion and events. The firmware's animator.rs, transition.rs, carry.rs and switch.rs state each step.
 import { abs, computeOf, floor, imul, max, min } from "../decoder/turning.js";
-import { FREE, MOST, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
-import { NORMAL, STATE, V, addPart, advance, eachMoving, isLast, partOf, passLaps, placed, seek, setSpeed, start, travelOf } from "./track.js";
+import { FREE, MOST, WHOLE, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
+import { NORMAL, STATE, V, addPart, advance, beginLap, eachMoving, isLast, partOf, passLaps, placed, seek, setSpeed, start, travelOf } from "./track.js";
 
 // Kinds of transitions: the third lets the difference of poses alone die out.
 const CUT = 0;
@@ -10,6 +10,8 @@ const FADED = 2;
 const EVENTS = 16;
 // Frames that are left of a transition where its cubics are solved again, so that the end is exactly zero.
 const AGAIN = [2, 32, 128];
+// The time in ns in which a difference of velocities dies out, at most, so that limbs do not swing past both motions.
+const SWING_NS = 250e6;
 // Frames that a transition advances by together with the clip in one update, at most.
 const TOGETHER = 8;
 // The word of a moving channel's state in the decoder that says whom it follows, and what that is if it reads its own segments.
@@ -59,6 +61,8 @@ export const animatorOf = (first, carrier) => {
   const track = {};
   let groups, root, travel;
   let left = 0;
+  // Frames that are left when velocities have died out, if that is before the end.
+  let leftThen = 0;
   // Time of the transition's frame in ns, and whether the transition advances with the clip: then by how many frames it has.
   let rest = 0;
   let isCarried = false;
@@ -88,24 +92,42 @@ export const animatorOf = (first, carrier) => {
     between(forward, first, end);
   };
 
-  const solve = (from = 0, to = channels) => {
-    const [byPlace, byVelocity, end] = left > 2 ? cubicOf(left) : [];
+  const solve = (from = 0, to = channels, frames = left) => {
+    const [byPlace, byVelocity, end] = frames > 2 ? cubicOf(frames) : [];
     for (let c = from; c < to; c++) {
-      if (!left || !(d[c] | v[c])) d[c] = v[c] = w[c] = k[c] = 0;
-      else if (left < 2) {
+      if (!frames || !(d[c] | v[c])) d[c] = v[c] = w[c] = k[c] = 0;
+      else if (frames < 2) {
         v[c] = -d[c];
         w[c] = d[c];
         k[c] = 0;
-      } else if (left < 3) {
+      } else if (frames < 3) {
         w[c] = -d[c] - 2 * v[c];
         k[c] = 2 * d[c] + 3 * v[c];
       } else {
         k[c] = byPlace(d[c]) + byVelocity(v[c]);
-        w[c] = -end(v[c]) - floor((k[c] * (left - 1)) / 2);
+        w[c] = -end(v[c]) - floor((k[c] * (frames - 1)) / 2);
       }
     }
   };
-  const solveAgain = () => AGAIN.includes(left) && solve();
+  // Lets velocities die out in fewer frames than differences: the sum of two cubics is one.
+  const solveApart = (few) => {
+    const [differences, velocities] = [d, v].map((own) => own.slice());
+    v.fill(0);
+    solve();
+    const [accelerations, slopes] = [w, k].map((own) => own.slice());
+    d.fill(0);
+    v.set(velocities);
+    solve(0, channels, few);
+    d.set(differences);
+    v.set(velocities);
+    for (let c = 0; c < channels; c++) {
+      w[c] += accelerations[c];
+      k[c] += slopes[c];
+    }
+  };
+  // Not before velocities that die out in fewer frames have done so.
+  const solvesAt = (at) => (at === leftThen ? at > 0 : AGAIN.includes(at) && (at < leftThen || !leftThen));
+  const solveAgain = () => solvesAt(left) && solve();
   const runTransition = (elapsed) => {
     const { frameTimeNs } = track.clip;
     for (rest += elapsed; rest >= frameTimeNs && left; rest -= frameTimeNs) {
@@ -145,7 +167,8 @@ export const animatorOf = (first, carrier) => {
   // Whether a transition may advance with a clip whose channels follow no others, before its last frame and past no frame where the cubics are solved.
   const carry = (frames) => {
     const { channels: moving, frame, state } = track.player;
-    if (left < 3 || left < frames || frame + frames + 1 >= track.clip.frames || (frames > 1 && AGAIN.some((again) => left > again && left - frames < again))) return false;
+    if (left < 3 || left < frames || frame + frames + 1 >= track.clip.frames ) return false;
+    for (let passed = 1; passed < frames; passed++) if (solvesAt(left - passed)) return false;
     if (isCarried) return true;
     if (moving.some((_, index) => state[STATE * index + LEADER] !== OWN)) return false;
     for (const c of moving) if (!(d[c] | v[c])) w[c] = k[c] = 0;
@@ -166,7 +189,7 @@ export const animatorOf = (first, carrier) => {
     left -= frames;
     rest = total - frames * frameTimeNs;
     track.rest = rest * 65536;
-    if (frames && AGAIN.includes(left)) {
+    if (frames && solvesAt(left)) {
       leaveCarried();
       solve();
     }
@@ -224,16 +247,22 @@ export const animatorOf = (first, carrier) => {
     v.set(next, begin);
   };
   // Whether the velocities lead on: nothing moves in a clip that has ended or is at its last frame.
-  const isMoving = () => !track.ended && (track.clip.looped || !isLast(track));
-  // Keeps the pose of this instant and of a frame of the new clip later, as difference and velocity.
-  const takeMotion = (clip) => {
-    const ratio = min(floor((clip.frameTimeNs * 65536) / track.clip.frameTimeNs), 2 ** 30);
+  const isMoving = (own) => !own.ended && (own.clip.looped || !isLast(own));
+  // Keeps the pose of this instant and of a frame of the new clip later, as difference and velocity. A weight of a second track may be mixed in.
+  const ratioOf = (own, clip) => min(floor((clip.frameTimeNs * 65536) / own.clip.frameTimeNs), 2 ** 30);
+  // Adds a weight of what the channels of a track move in a frame of the new clip.
+  const addMotion = (own, weight, clip) => {
+    const speed = floor((own.speed * ratioOf(own, clip)) / 65536);
+    if (isMoving(own)) eachMoving(own, (c, x) => (v[c] += scaledDown(weighted(x, weight), speed, 16)));
+  };
+  const takeMotion = (clip, second, weight) => {
+    const ratio = ratioOf(track, clip);
     for (let c = 0; c < channels; c++) {
       d[c] = pose[c];
       v[c] = pose[c] + (left ? scaledDown(v[c], ratio, 16) : 0);
     }
-    const speed = floor((track.speed * ratio) / 65536);
-    if (isMoving()) eachMoving(track, (c, own) => (v[c] += scaledDown(own, speed, 16)));
+    addMotion(track, WHOLE - weight, clip);
+    if (second) addMotion(second, weight, clip);
   };
   // Turns the root in the kept poses, and its horizontal velocity.
   const turnMotion = (by) => {
@@ -260,7 +289,7 @@ export const animatorOf = (first, carrier) => {
       v[c] = isFaded ? 0 : v[c] - d[c];
       d[c] -= raw[c];
     }
-    if (!isFaded && isMoving()) eachMoving(track, (c, own) => (v[c] -= scaledDown(own, track.speed, 16)));
+    if (!isFaded && isMoving(track)) eachMoving(track, (c, own) => (v[c] -= scaledDown(own, track.speed, 16)));
   };
   // Brings the kept poses from the old clip's form to that of the new one.
   const convert = (old, clip) => {
@@ -278,14 +307,14 @@ export const animatorOf = (first, carrier) => {
     root = rootOf(clip, groups, carrier);
   };
   // Goes over to a clip of the same rig from a frame, in a number of frames of the new clip. On an error the old clip plays on.
-  const change = (clip, frame, speed, kind, frames) => {
+  const change = (clip, frame, speed, kind, frames, second, weight = 0) => {
     const old = track.clip;
     let [now, heading] = placement;
     if (old.rig.id !== clip.rig.id) throw new Error("pantin: another rig");
     leaveCarried();
     root.compute(pose);
     const yaw = yawOf(root.axis);
-    takeMotion(clip);
+    takeMotion(clip, second, weight);
     start(track, clip, frame, speed);
     if (!isAlike(old, clip)) {
       convert(old, clip);
@@ -298,9 +327,15 @@ export const animatorOf = (first, carrier) => {
     takeDifference(kind === FADED);
     left = kind === CUT ? 0 : frames;
     rest = 0;
+    const few = max(2, Math.ceil(SWING_NS / clip.frameTimeNs));
+    leftThen = few + 2 < left ? left - few : 0;
+    if (leftThen) solveApart(few);
+    else solve();
     // The figure keeps its place: only the root's velocity dies out, and where it carries the root is added to the way.
-    for (const c of root.place) if (c >= 0) d[c] = -Math.trunc((v[c] * left) / 3);
-    solve();
+    for (const c of root.place) if (c >= 0) {
+      d[c] = -Math.trunc((v[c] * left) / 3);
+      solve(c, c + 1);
+    }
     between(true, track.player.frame, track.player.frame + 1);
     compose();
     stand([now, (heading + turned) | 0]);
@@ -349,11 +384,29 @@ export const animatorOf = (first, carrier) => {
         solve(c, c + 1);
       });
     },
+    beginLap: (second) => beginLap(second, root),
+    // Where the roots of the animator's track and of a second one are.
+    roots: (second) => {
+      const at = root.place.map((channel) => second.player.raw[channel] ?? 0);
+      const part = partOf(second) >> 1;
+      if (second.rest) eachMoving(second, (c, own) => root.place.includes(c) && (at[root.place.indexOf(c)] = (at[root.place.indexOf(c)] + weighted(own, part)) | 0));
+      return [place.map(Number), at];
+    },
+    // Lets the figure go a way of the clip's axes beside the clip.
+    lead: (way) => {
+      const turned = rotated(travel.lapHeading, ...way.map(big));
+      travel.origin = travel.origin.map((x, axis) => wide(x - turned[axis]));
+      locate();
+    },
     get groups() {
       return groups;
     },
     get left() {
       return left;
+    },
+    // Of the frame of the transition, in ns.
+    get rest() {
+      return rest;
     },
     get place() {
       return root.place;

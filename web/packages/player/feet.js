@@ -25,6 +25,7 @@ const difference = (a, b) => a.map((x, axis) => (x - b[axis]) | 0);
 const squareOf = (vector) => vector.reduce((sum, x) => sum + x * x, 0);
 const anyBit = (vector) => vector.reduce((all, x) => all | abs(x), 0);
 const cycled = (vector, by) => vector.map((_, axis) => vector[(axis + by) % 3]);
+const dot = (a, b) => (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> 15;
 const crossed = (a, b) => a.map((_, axis) => (a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3] + HALF) >> 15);
 const transposed = (turn) => turn.map((_, index) => turn[(index * 3) % 8 || index]);
 
@@ -173,8 +174,9 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const [upper, lower] = leg.slice(2).map((index) => directionOf(offsetOf(index))[1]);
     must(upper && lower);
     const [closest, farthest] = [1789569707, 11930465].map((bend) => floor(sqrt(max(0, upper ** 2 + lower ** 2 + floor((2 * upper * lower * sinCosOf(bend)[1]) / ONE)))));
-    // The axis of the knee; the point that is held, and where it stays; the one that was on the ground before, and where it was; -1 for none.
+    // The axis of the knee, and the sine of the greatest bend that it was seen at; the point that is held, and where it stays; the one that was on the ground before, and where it was; -1 for none.
     let hinge;
+    let most = 0;
     let point = -1;
     let before = -1;
     let anchor = [0n, 0n, 0n];
@@ -287,7 +289,6 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       eases = eases.map(([d, v, since], axis) => [d, axis < 2 ? narrow(trunc((v * whole) / RELEASE)) : v, since]);
     };
     const convert = (by) => {
-      hinge = 0;
       lift = shifted(lift, -by);
       last = last.map((x) => wideShifted(x, by));
       anchor = anchor.map((x) => wideShifted(x, by));
@@ -311,9 +312,12 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const old = [unitOf(difference(knee, hip), upper), unitOf(difference(ankle, knee), lower)];
       const [bend, sine] = directionOf(crossed(...old));
       // At least 2 degrees show the axis of the bend; a straight knee bends as it did, or else across the way to its target.
-      const isBent = sine > ONE / 28;
+      // So does one that is stretched beyond that: bent the other way, and less than it was seen bent.
+      const known = hinge && imageOf(kneeTurn, hinge);
+      const isBent = sine > ONE / 28 && (!known || sine > most || dot(bend, known) >= 0);
+      if (isBent) most = max(hinge ? most : 0, sine);
       if (isBent) hinge = imageOf(transposed(kneeTurn), bend);
-      const [axis = [0, 0, ONE]] = isBent ? [bend] : hinge ? [imageOf(kneeTurn, hinge)] : directionOf(crossed(way, [ONE, 0, 0]));
+      const [axis = [0, 0, ONE]] = isBent ? [bend] : known ? [known] : directionOf(crossed(way, [ONE, 0, 0]));
       const [across] = directionOf(crossed(way, axis));
       const squares = old.map((bone) => (isBent ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));
       if (!across || !squares.every(Boolean)) return;
@@ -388,11 +392,14 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     next: (transition) => {
       const { clip, player, speed } = track;
       const part = floor(track.rest / clip.frameTimeNs);
-      const behind = +(part > 0);
+      // Not before the transition that runs has ended: in 65536ths of a frame.
+      const rest = animator.left * 65536 - floor((animator.rest * 65536) / clip.frameTimeNs);
+      const behind = Math.ceil((part + Number((big(rest) * big(max(speed, 0))) >> 16n)) / 65536);
+      const from = clip.looped ? (player.frame + behind) % clip.frames : player.frame + behind;
       let least = Infinity;
       let start;
       for (const [own, , at, to] of entries) {
-        let ahead = at - player.frame - behind;
+        let ahead = at - from;
         if (ahead < 0) ahead = clip.looped ? ahead + clip.frames : Infinity;
         if (own === transition && speed > 0 && ahead < least) {
           least = ahead;

@@ -10,8 +10,8 @@ export const EVENT = 3;
 export const ABOVE = 4;
 // No second clip; of a transition, a start in step with the old clip.
 export const NOTHING = 255;
-// A layer's fade is in units of this many microseconds.
-const FADE_UNIT = 15625;
+// Times are in units of this many microseconds.
+const TIME_UNIT = 15625;
 
 export const must = (holds) => {
   if (!holds) throw new Error("pantin: bad state machine");
@@ -34,10 +34,10 @@ export const tableOf = (fieldsOf, bytes, clips) => {
   must(version === 1 && states < 65 && parameters < 9 && inputs < 33 && layers < 5 && first < states);
   const table = {
     first, any,
-    states: rows(states, () => ({ clip: u8(), other: u8(), by: u8(), flags: u8(), speed: 256 * i16(), from: u8(), count: u8() })),
+    states: rows(states, () => ({ clip: u8(), other: u8(), by: u8(), follow: u8() * TIME_UNIT, speed: 256 * i16(), from: u8(), count: u8() })),
     transitions: rows(transitions, () => ({ cause: u8(), argument: u8(), threshold: i16(), to: u8(), kind: u8(), frames: u8(), start: u8() })),
     parameters: rows(parameters, () => [i16(), i16(), i16()]),
-    layers: rows(layers, () => ({ clip: u8(), input: u8(), fade: u8() * FADE_UNIT, flags: u8(), states: take(8) })),
+    layers: rows(layers, () => ({ clip: u8(), input: u8(), fade: u8() * TIME_UNIT, flags: u8(), states: take(8) })),
   };
   // A name that is no text is empty, but a layer's has to be one.
   const found = [states, parameters, inputs].map((count) => rows(count, () => textOf(take(u8())) ?? ""));
@@ -61,7 +61,7 @@ export const tableOf = (fieldsOf, bytes, clips) => {
   };
   const anywhere = leads({ from: 0, count: any });
   const ways = table.states.map((row) => {
-    must(row.clip < clips && !row.flags && abs(row.speed) <= 4 * NORMAL && (row.other === NOTHING || (row.other < clips && row.by < parameters)));
+    must(row.clip < clips && abs(row.speed) <= 4 * NORMAL && (row.other === NOTHING ? !row.follow : (row.other < clips && row.by < parameters)));
     return leads(row);
   });
   // Transitions lead from the first state to every other.

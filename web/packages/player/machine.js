@@ -1,10 +1,10 @@
 // The state machine of a bank, and what it plays: an animator, the second clip of a blend, and layers. The firmware's machine.rs and character.rs state each step. Feet are of a module of their own, feet.js.
 import { floor, max, min } from "../decoder/turning.js";
 import { animatorOf } from "./animator.js";
-import { WHOLE, big, clamp, isTurn } from "./channels.js";
+import { WHOLE, big, clamp, isTurn, weighted } from "./channels.js";
 import { inStep, strideOf } from "./gait.js";
 import { ABOVE, END, EVENT, INPUT, NOTHING, RELEASED, maskOf } from "./machine-table.js";
-import { NORMAL, addPart, advance, close, seek, setSpeed, start } from "./track.js";
+import { NORMAL, addPart, advance, close, partOf, seek, setSpeed, start } from "./track.js";
 
 // How often the state changes in one instant, and at how many instants in the middle of an update, at most.
 const CHANGES = 4;
@@ -55,6 +55,10 @@ export const characterOf = (rig, table, open, lendFeet) => {
   let seen = 0;
   let entered = false;
   let isBlending = false;
+  // How much of the second clip is mixed in, of WHOLE.
+  let mixed = 0;
+  // Where both clips and their roots were in the last update, if they are in step.
+  let led;
   // The index of the transition that waits for a matching foot.
   let waiting = Infinity;
 
@@ -85,6 +89,20 @@ export const characterOf = (rig, table, open, lendFeet) => {
     const [low, high] = parameters[parameter];
     return clamp(Math.trunc(((values[parameter] - low) * WHOLE) / (high - low)), 0, WHOLE);
   };
+  // The way between two instants of a loop, less than a lap, in the clip's axes; nothing over a seam that turns the figure.
+  const wayBetween = ([before, from], [now, to], seam, isForward) => {
+    const way = to.map((x, axis) => (x - from[axis]) | 0);
+    if (isForward ? now >= before : now <= before) return way;
+    if (seam && !seam.turn) return way.map((x, axis) => (x + (isForward ? 1 : -1) * Number(big.asIntN(32, seam.way[axis]))) | 0);
+  };
+  // Lets the second clip lead the figure too: by a weight of its way since the update before.
+  const lead = (weight) => {
+    const places = animator.roots(second);
+    const instants = [track, second].map((own, index) => [own.player.frame + partOf(own) / 65536, places[index]]);
+    const [own, its] = [track, second].map(({ seam }, index) => led && wayBetween(led[index], instants[index], seam, track.speed >= 0));
+    if (own && its) animator.lead(its.map((x, axis) => weighted((x - own[axis]) | 0, weight)));
+    led = instants;
+  };
   // Brings the second clip in step with the first by the footsteps of both, and lets the first play at a speed between the two.
   const keepStep = (weight) => {
     const strides = [track, second].map(({ clip }) => strideOf(clip));
@@ -92,23 +110,40 @@ export const characterOf = (rig, table, open, lendFeet) => {
     // The stride takes a time between those of the two clips, whatever their frame rates.
     const [time, its] = [track, second].map(({ clip }, index) => big(strides[index]) * big(clip.frameTimeNs));
     const mixed = time + (((its - time) * big(weight)) >> 15n);
-    const fast = clamp(time * big(row().speed), -LONGEST, LONGEST - 1n);
-    animator.setSpeed(mixed ? Number(clamp(fast / mixed, -4n * big(NORMAL), 4n * big(NORMAL))) : 0);
+    const speedOf = (time) => {
+      const fast = clamp(time * big(row().speed), -LONGEST, LONGEST - 1n);
+      return mixed ? Number(clamp(fast / mixed, -4n * big(NORMAL), 4n * big(NORMAL))) : 0;
+    };
+    animator.setSpeed(speedOf(time));
+    setSpeed(second, speedOf(its));
     const at = inStep(track, second.clip, second.player.frame);
     if (at < 0) throw new Error("pantin: no footsteps");
     seek(second, floor(at / 65536));
     second.rest = (at % 65536) * second.clip.frameTimeNs;
     if (second.rest) close(second);
+    if (track.clip.looped && second.clip.looped) lead(weight);
+  };
+  // Lets the blend follow its parameter.
+  const keepUp = (elapsed) => {
+    if (!isBlending) return;
+    const { by, follow } = row();
+    const to = weightOf(by);
+    const step = Math.ceil((elapsed * WHOLE) / follow);
+    mixed = follow ? clamp(to, mixed - step, mixed + step) : to;
   };
   const blend = () => {
-    const { other, by, speed } = row();
+    const { other, by, follow, speed } = row();
     if (other === NOTHING) return;
-    if (!isBlending) start(second, clipOf(other), 0, speed);
+    if (!isBlending) {
+      start(second, clipOf(other), 0, speed);
+      if (second.clip.looped) animator.beginLap(second);
+      mixed = follow ? 0 : weightOf(by);
+      led = undefined;
+    }
     isBlending = true;
-    const weight = weightOf(by);
-    keepStep(weight);
-    animator.mix(second, second.player.raw, weight, () => true);
-    addPart(second, pose, weight);
+    keepStep(mixed);
+    animator.mix(second, second.player.raw, mixed, () => true);
+    addPart(second, pose, mixed);
     animator.leavePlace();
   };
 
@@ -124,7 +159,9 @@ export const characterOf = (rig, table, open, lendFeet) => {
     const clip = clipOf(index);
     // Without footsteps it begins at its first frame.
     const frame = at ?? (first === NOTHING ? max(0, floor(inStep(track, clip, 0) / 65536)) : first);
-    animator.change(clip, begun(frame, clip, speed), speed, kind, frames);
+    // The pose of this instant, of which it has the first clip's part alone.
+    if (isBlending) blend();
+    animator.change(clip, begun(frame, clip, speed), speed, kind, frames, isBlending && second, isBlending ? mixed : 0);
     state = to;
     waiting = Infinity;
     isBlending = false;
@@ -235,6 +272,7 @@ export const characterOf = (rig, table, open, lendFeet) => {
     update: (elapsed) => {
       animator.forget();
       entered = false;
+      keepUp(elapsed);
       try {
         run(elapsed * 1000);
       } finally {
@@ -244,8 +282,8 @@ export const characterOf = (rig, table, open, lendFeet) => {
       }
       layers.forEach((layer) => updateLayer(layer, elapsed));
       // Of two clips that are blended the figure has the feet of the one that there is more of.
-      const { clip, other, by } = row();
-      const [own, { player }] = isBlending && weightOf(by) > WHOLE / 2 ? [other, second] : [clip, track];
+      const { clip, other } = row();
+      const [own, { player }] = isBlending && mixed > WHOLE / 2 ? [other, second] : [clip, track];
       feet?.hold(own, player.frame, entered, elapsed);
     },
     // Some poses of the states' clips, with the root at the origin.

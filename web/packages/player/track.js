@@ -130,6 +130,11 @@ const lap = (track, root, isAlone) => {
   if (next) findSeam(track, root, rootAt(track, root, NOW), next);
   track.lapped ||= isAlone;
 };
+// Goes to the first frame of a loop, with where a lap of it takes the root.
+export const beginLap = (track, root) => {
+  seek(track, track.clip.frames);
+  lap(track, root, false);
+};
 
 // Lets time pass, up to 2^42 ns. Returns the stretch of play: its first and last frame, whether the instants lie after these, how often the seam of a loop was passed, and
 // the time that is left after the end of a clip that is no loop.

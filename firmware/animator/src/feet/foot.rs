@@ -98,7 +98,8 @@ impl<'a> Foot<'a> {
 
     /// Converts the foot to another form of clips. The unit of that form is 2^-`shift` old units.
     pub(super) fn in_form(&self, row: FootRow, clip: &Clip<'a>, groups: &[Group], shift: i32) -> Result<Foot<'a>, Error> {
-        let Foot { limb, points, .. } = Foot::new(row, clip, groups)?;
+        let Foot { mut limb, points, .. } = Foot::new(row, clip, groups)?;
+        limb.bends_as(&self.limb);
         let wide = |x: i64| if shift >= 0 { x.wrapping_shl(shift.min(63) as u32) } else { x >> shift.unsigned_abs().min(63) };
         let ease = |own: Ease| own.in_unit(shift);
         let (flat, rise, lift) = (self.flat.map(ease), ease(self.rise), shifted(self.lift, -shift));

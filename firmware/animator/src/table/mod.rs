@@ -33,6 +33,8 @@ const STATE: usize = 8;
 const TRANSITION: usize = 8;
 const PARAMETER: usize = 6;
 const LAYER: usize = 12;
+/// The unit of a row's times: 1/64 s.
+const UNIT_US: u32 = 15_625;
 /// In place of a second clip.
 const NONE: u8 = 255;
 /// In place of a first frame: in step with the old clip.
@@ -123,19 +125,20 @@ impl<'a> Table<'a> {
         let states = u64::from_le_bytes(states.try_into().ok()?);
         let before = self.states() + self.parameters() + self.inputs();
         let joints = core::str::from_utf8(self.names().nth(before + index)?).ok()?;
-        (reserved == 0).then_some(LayerRow { clip, input, fade_us: u32::from(fade) * 15_625, states, joints })
+        (reserved == 0).then_some(LayerRow { clip, input, fade_us: u32::from(fade) * UNIT_US, states, joints })
     }
 
     /// A state; `None` if there is none of this index.
     pub fn state(&self, index: u8) -> Option<StateRow> {
         let at = HEADER + STATE * usize::from(index);
-        let &[clip, other, parameter, flags, low, high, first, count] = self.bytes.get(at..at + STATE)? else { return None };
+        let &[clip, other, parameter, follow, low, high, first, count] = self.bytes.get(at..at + STATE)? else { return None };
         let speed = i16::from_le_bytes([low, high]);
-        if usize::from(index) >= self.states() || flags != 0 || !(-1024..=1024).contains(&speed) {
+        if usize::from(index) >= self.states() || (other == NONE && follow != 0) || !(-1024..=1024).contains(&speed) {
             return None;
         }
         let blend = (other != NONE).then_some((other, parameter));
-        Some(StateRow { clip, blend, speed: I16F16::from_bits(i32::from(speed) << 8), transitions: (first, count) })
+        let (speed, follow_us) = (I16F16::from_bits(i32::from(speed) << 8), u32::from(follow) * UNIT_US);
+        Some(StateRow { clip, blend, follow_us, speed, transitions: (first, count) })
     }
 
     /// A transition; `None` if there is none of this index.

@@ -56,6 +56,8 @@ pub struct StateRow {
     pub clip: u8,
     /// Another clip into which a parameter blends: its index in the bank, and the parameter's.
     pub blend: Option<(u8, u8)>,
+    /// The time in which the blend goes from one clip to the other at the fastest, however fast the parameter changes.
+    pub follow_us: u32,
     /// The speed.
     pub speed: I16F16,
     /// The first of its transitions, and how many there are.

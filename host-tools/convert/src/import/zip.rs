@@ -135,7 +135,7 @@ impl<'a> Archive<'a> {
             let mut names: Vec<String> =
                 motions.iter().take(MOST_NAMES).enumerate().map(|(number, path)| named(number, path)).collect();
             names.extend((motions.len() > MOST_NAMES).then(|| format!("{} more", motions.len() - MOST_NAMES)));
-            let text = format!("no motion {} in the archive; there are {}", quoted(Path::new(wanted)), names.join(", "));
+            let text = format!("no motion {} in the archive, which has {}", quoted(Path::new(wanted)), names.join(", "));
             Error::setting(Setting::Animation, text)
         };
         Ok(Chosen { motion: motion(found.ok_or_else(refusal)?), animation: None, first_of: None })

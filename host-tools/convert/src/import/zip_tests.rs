@@ -118,7 +118,7 @@ fn of_several_motions_the_user_chooses_one() {
     }
     let error = refused(&archive, &ImportOptions::new().animation("jump"));
     let names = "0 (a/run.bvh), 1 (walk.bvh), 2 (z/wave.bvh), 3 (labels.csv)";
-    assert_eq!(error, format!("captures.zip: animation: no motion `jump` in the archive; there are {names}"));
+    assert_eq!(error, format!("captures.zip: animation: no motion `jump` in the archive, which has {names}"));
     let files = InMemory::new().with("captures.zip", archive);
     let entries = list_of(&files, Path::new("captures.zip"), &ImportOptions::new()).unwrap();
     let names: Vec<(&str, usize)> = entries.iter().map(|entry| (entry.name.as_deref().unwrap(), entry.frames)).collect();

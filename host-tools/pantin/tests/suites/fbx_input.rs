@@ -247,7 +247,7 @@ fn stacks_are_chosen_by_name_or_number() {
     let rest = load_as(LEG.as_bytes(), &ImportOptions::new().animation("rest")).unwrap();
     assert!(rest.warnings.iter().any(|warning| warning.contains("moves nothing")));
     let wrong = load_as(LEG.as_bytes(), &ImportOptions::new().animation("2"));
-    assert!(wrong.unwrap_err().contains("there are 0 (kick), 1 (rest)"));
+    assert!(wrong.unwrap_err().contains("the file has 0 (kick), 1 (rest)"));
 }
 
 #[test]

@@ -343,7 +343,7 @@ fn an_animation_is_chosen_by_name_or_number() {
         assert_eq!(motion.rig.joints.len(), 2, "the figure is the same for all animations of a file");
     }
     let error = format!("{:#}", chosen("run").unwrap_err());
-    assert!(error.ends_with("no animation `run`; there are 0 (walk), 1 (face)"), "{error}");
+    assert!(error.ends_with("no animation `run`: the file has 0 (walk), 1 (face)"), "{error}");
 }
 
 #[test]

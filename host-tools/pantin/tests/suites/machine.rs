@@ -2,8 +2,10 @@
 
 use pantin::Bank;
 use pantin_animator::machine::{Cause, Machine, SECTION, Table};
+use pantin_animator::session::{Replay, Session};
 use pantin_animator::{Animator, Transition, Workspace};
 use pantin_convert::bank::{self, CheckedRig, Named};
+use pantin_pictures::machine::playback::{joints, play};
 use pantin_pictures::machine::{Source, Text, graph, make};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -513,4 +515,46 @@ fn a_change_of_velocity_that_no_body_could_make_is_warned_of() {
         "{hasty:?}"
     );
     assert_eq!(stops(1.0), [""; 0]);
+}
+
+/// The farthest that a joint goes in a picture about the hips at 60 a second, before a program sets the parameter of a blend from one end to the other
+/// at once, and after it; and how far the figure goes in the last second.
+fn blended(blend: &str) -> [f64; 3] {
+    let text = format!(
+        "[[parameter]]\nname = \"speed\"\nrange = [0, 100]\n[[state]]\nname = \"move\"\nclip = \"walk\"\n\
+         blend = {{ clip = \"run\", by = \"speed\"{blend} }}\n"
+    );
+    let bytes = small_bank();
+    let file = Text { name: "a.toml", text: &text };
+    let made = make(&Source::parse(&file).unwrap(), &file, &Bank::new_checked(&bytes).unwrap()).unwrap();
+    let bytes = bank::with_section(&bytes, SECTION, &made.table).unwrap();
+    let table = Table::of_bank(&bytes).unwrap();
+    let session = Session::new_checked("1.5 set speed 100\n4 end", &table).unwrap();
+    let mut poses: Vec<Vec<[f64; 3]>> = Vec::new();
+    play(&bytes, Replay::new(session, 60), |character| {
+        poses.push(joints(character));
+        Ok(())
+    })
+    .unwrap();
+    let way = |pair: &[Vec<[f64; 3]>], joint: usize| {
+        let about = |axis: usize| (pair[1][joint][axis] - pair[1][0][axis]) - (pair[0][joint][axis] - pair[0][0][axis]);
+        (0..3).map(|axis| about(axis).powi(2)).sum::<f64>().sqrt()
+    };
+    let farthest = |poses: &[Vec<[f64; 3]>]| {
+        poses.windows(2).flat_map(|pair| (0..pair[0].len()).map(move |joint| way(pair, joint))).fold(0.0, f64::max)
+    };
+    let [from, to] = [poses[180][0], poses[239][0]];
+    [farthest(&poses[..88]), farthest(&poses[88..]), (0..3).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f64>().sqrt()]
+}
+
+#[test]
+fn a_blend_follows_its_parameter_in_its_time() {
+    let [walk, at_once, run] = blended(", seconds = 0");
+    assert!(at_once > 2.0 * walk, "{at_once} cm; the walk {walk}");
+    // Two clips that move as fast as the faster one, and the way from one to the other in half a second.
+    let [_, followed, same] = blended("");
+    assert!(followed < 0.7 * at_once, "{followed} cm; at once {at_once}");
+    assert!((same - run).abs() < 0.02 * run, "{same} cm in a second; at once {run}");
+    assert!(error("[[parameter]]\nname = \"v\"\nrange = [0, 1]\n[[state]]\nname = \"walk\"\nblend = { clip = \"run\", by = \"v\", seconds = 5 }\n")
+        .contains("blend: seconds: expected 0 to"));
 }

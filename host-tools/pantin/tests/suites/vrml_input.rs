@@ -143,7 +143,7 @@ fn of_several_clocks_the_longest_is_read_and_another_can_be_chosen() {
         near(place(&short, "foot", 15), [8.0, 0.0, 0.0]);
     }
     let options = ImportOptions::new().animation("none");
-    assert!(load_as(&world, &options).unwrap_err().contains("there are 0 (T), 1 (short)"));
+    assert!(load_as(&world, &options).unwrap_err().contains("the file has 0 (T), 1 (short)"));
 }
 
 #[test]

@@ -97,6 +97,8 @@ pub struct Blend {
     pub clip: String,
     /// The parameter: at its greatest value the second clip plays alone.
     pub by: String,
+    /// The least time from one clip to the other, however fast the parameter changes.
+    pub seconds: Option<f64>,
 }
 
 /// A transition: one cause, where it leads, and how.

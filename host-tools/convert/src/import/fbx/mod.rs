@@ -108,7 +108,7 @@ fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
     let chosen = animations::choose(wanted, stacks.iter().map(|stack| Some(&*stack.element.name)));
     chosen.map(|number| &stacks[number]).ok_or_else(|| {
         let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
-        anyhow!("no animation `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
+        anyhow!("no animation `{wanted}`: the file has {}", one_line(&names.collect::<Vec<_>>().join(", ")))
     })
 }
 

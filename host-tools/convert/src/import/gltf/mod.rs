@@ -96,7 +96,7 @@ fn chosen(file: &File, path: &Path, options: &Request) -> Result<usize> {
     super::animations::choose(wanted, called).ok_or_else(|| {
         let names: Vec<String> =
             animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
-        anyhow!("{}: no animation `{wanted}`; there are {}", path.display(), one_line(&names.join(", ")))
+        anyhow!("{}: no animation `{wanted}`: the file has {}", path.display(), one_line(&names.join(", ")))
     })
 }
 

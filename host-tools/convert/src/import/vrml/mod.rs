@@ -98,7 +98,7 @@ fn chosen<'c>(world: &World, clocks: &'c [TimeSensor], wanted: Option<&str>) -> 
     let chosen = animations::choose(wanted, clocks.iter().map(|clock| world.nodes[clock.node].def.as_deref()));
     chosen.map(|number| vec![&clocks[number]]).ok_or_else(|| {
         let names = clocks.iter().enumerate().map(|(number, clock)| format!("{number} ({})", world.name(clock.node)));
-        anyhow!("no time sensor `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
+        anyhow!("no time sensor `{wanted}`: the file has {}", one_line(&names.collect::<Vec<_>>().join(", ")))
     })
 }
 

@@ -13,13 +13,18 @@ const OTHER_FOOT_CM: f64 = 8.0;
 /// What a cm costs by which the figure glides beside its way, and by which a foot steps to another place.
 const GLIDE: f64 = 0.3;
 const STEP: f64 = 0.2;
+/// What a cm/s^2 costs by which the figure is accelerated more than this.
+const ACCELERATION: f64 = 0.02;
+const WITH_EASE: f64 = 1000.0;
 /// What a cm costs by which a foot moves over the ground.
-const DRAG: f64 = 1.0;
+const DRAG: f64 = 2.0;
 /// The height below which it does, in cm.
 const LOW_CM: f64 = 2.0;
 /// The farthest that a foot is held beside its place in the new clip, in cm: one that is farther steps there, and is lifted by at most this.
 const HELD_CM: f64 = 6.0;
 const LIFT_CM: f64 = 9.0;
+/// The seconds in which a difference in velocity dies out in a transition, at most.
+const SWING: f64 = 0.25;
 /// Seconds of a clip that is no loop in which a transition may enter it.
 const FIRST: f64 = 0.2;
 /// Frames of a clip that are compared at most.
@@ -114,12 +119,21 @@ impl<'a> Change<'a> {
         [x * cos - y * sin, x * sin + y * cos]
     }
 
-    /// By how much the figure's horizontal velocity changes, in cm a second, at the speeds at which the clips play.
-    fn velocity_change(&self, [from, to]: [f64; 2]) -> f64 {
+    /// What the figure's horizontal velocity changes by, in cm a second, at the speeds at which the clips play.
+    fn velocity_change(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let mean = |pose: &[[f64; 6]], axis: usize| pose.iter().map(|joint| joint[axis]).sum::<f64>() / pose.len().max(1) as f64;
         let (old, new) = (&self.from.poses[self.at], &self.to.poses[self.start]);
         let [x, y] = self.turned([mean(new, 3), mean(new, 4)]);
-        (from * mean(old, 3) - to * x).hypot(from * mean(old, 4) - to * y)
+        [to * x - from * mean(old, 3), to * y - from * mean(old, 4)]
+    }
+
+    /// The greatest acceleration of the figure in cm/s^2: where it begins, by its change of velocity and by its glide, or where it ends, by the glide.
+    fn acceleration(&self, speeds: [f64; 2]) -> f64 {
+        let seconds = self.frames as f64 * self.to.frame_time;
+        let [glide, change] = [self.glide(), self.velocity_change(speeds)];
+        let at = |axis: usize| [6.0 * glide[axis] / seconds.powi(2), 2.0 * change[axis] / seconds];
+        let ([a, b], [x, y]) = (at(0), at(1));
+        (a + b).hypot(x + y).max(a.hypot(x))
     }
 
     /// By how much a joint's place and velocity differ in the old clip from those in the new one.
@@ -130,34 +144,41 @@ impl<'a> Change<'a> {
     }
 
     /// How different the instants are, in cm: the mean over the joints, and what the feet cost.
-    fn cost(&self) -> f64 {
+    fn cost(&self, speeds: [f64; 2]) -> f64 {
         let size = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
         let joints = self.from.poses[self.at].len();
+        let hasty = (self.acceleration(speeds) - WITH_EASE).max(0.0);
         let apart = |joint: usize| {
             let [place, velocity] = self.differs(joint);
             size(place) + FORESIGHT * size(velocity)
         };
-        (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64 + self.feet()
+        (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64 + self.feet() + ACCELERATION * hasty
+    }
+
+    /// For each foot whether it is on the ground in both clips, and, if it is in one, how far it is in the old clip from where it is in the new one.
+    fn grounded(&self) -> Vec<(bool, Option<[f64; 2]>)> {
+        let feet = self.from.feet[self.at].iter().zip(&self.to.feet[self.start]);
+        let foot = |(from, to): (&Option<usize>, &Option<usize>)| {
+            let way = |joint| {
+                let [[x, y, _], _] = self.differs(joint);
+                [x, y]
+            };
+            (from.is_some() && to.is_some(), to.or(*from).map(way))
+        };
+        feet.map(foot).collect()
+    }
+
+    /// The way to a foot that is on the ground in both clips, which the figure glides.
+    fn glide(&self) -> [f64; 2] {
+        let both = self.grounded().into_iter().filter_map(|(both, way)| way.filter(|_| both));
+        both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default()
     }
 
     /// What feet cost: those that are on the ground in one clip alone or elsewhere, and those that move over the ground.
     fn feet(&self) -> f64 {
-        let far = |[x, y]: [f64; 2]| x.hypot(y);
-        let feet: Vec<(bool, Option<[f64; 2]>)> = (self.from.feet[self.at].iter())
-            .zip(&self.to.feet[self.start])
-            .map(|(from, to)| {
-                let way = |joint| {
-                    let [[x, y, _], _] = self.differs(joint);
-                    [x, y]
-                };
-                (from.is_some() && to.is_some(), to.or(*from).map(way))
-            })
-            .collect();
-        // The figure glides to a foot that is on the ground in both clips.
-        let both = feet.iter().filter_map(|(both, way)| way.filter(|_| *both));
-        let glide = both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default();
+        let glide = self.glide();
         let mut cost = GLIDE * far(glide);
-        for (foot, (both, way)) in feet.into_iter().enumerate() {
+        for (foot, (both, way)) in self.grounded().into_iter().enumerate() {
             let rest = way.map_or(0.0, |[x, y]| far([x - glide[0], y - glide[1]]));
             let held = both && rest < HELD_CM;
             cost += STEP * rest + if way.is_none() || held { 0.0 } else { OTHER_FOOT_CM };
@@ -173,10 +194,12 @@ impl<'a> Change<'a> {
         let joints: Vec<(usize, [[f64; 3]; 2])> =
             self.to.joints[foot].iter().map(|&joint| (joint, self.differs(joint))).collect();
         // What is left of a difference in place and in velocity, of a cm and of a cm a second.
+        let swing = self.frames.min((SWING / step).ceil() as usize).max(1);
         let left = |frame: usize| {
-            let part = frame as f64 / self.frames as f64;
-            let rest = (1.0 - part) * (1.0 - part);
-            [rest * (1.0 + 2.0 * part), rest * part * self.frames as f64 * step]
+            let part = |frames: usize| (frame as f64 / frames as f64).min(1.0);
+            let (whole, short) = (part(self.frames), part(swing));
+            let rest = |part: f64| (1.0 - part) * (1.0 - part);
+            [rest(whole) * (1.0 + 2.0 * whole), rest(short) * short * swing as f64 * step]
         };
         let mut total = 0.0;
         let mut is_held = held;
@@ -206,9 +229,20 @@ impl<'a> Change<'a> {
     }
 }
 
+fn far([x, y]: [f64; 2]) -> f64 {
+    x.hypot(y)
+}
+
 /// Pairs of a frame of the old clip and the frame of the new one that follows it: whenever a transition is asked for, the best pair within a time is
-/// among them. `start` is the only frame of the new clip, if one is given; a transition takes `length` frames of it.
-pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64, length: usize) -> Vec<(usize, usize)> {
+/// among them. `start` is the only frame of the new clip, if one is given; a transition takes `length` frames of it. The clips play at these speeds.
+pub(super) fn best(
+    from: &Clip,
+    to: &Clip,
+    start: Option<usize>,
+    within: f64,
+    length: usize,
+    speeds: [f64; 2],
+) -> Vec<(usize, usize)> {
     let (frames, others) = (from.poses.len(), to.poses.len());
     let starts: Vec<usize> = match start {
         Some(start) => vec![start.min(others - 1)],
@@ -219,7 +253,7 @@ pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64, le
     let found: Vec<(usize, usize, f64)> = (0..frames)
         .step_by(stride)
         .filter_map(|at| {
-            let costs = starts.iter().map(|&start| (start, Change::new((from, at), (to, start), length).cost()));
+            let costs = starts.iter().map(|&start| (start, Change::new((from, at), (to, start), length).cost(speeds)));
             costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(start, cost)| (at, start, cost))
         })
         .collect();
@@ -239,8 +273,12 @@ pub(super) fn best(from: &Clip, to: &Clip, start: Option<usize>, within: f64, le
     chosen
 }
 
-/// The least change of the figure's velocity in a transition at one of these pairs of frames, in cm a second, for the speeds of the two states.
-pub(super) fn velocity_change(from: &Clip, to: &Clip, pairs: &[(usize, usize)], speeds: [f64; 2]) -> f64 {
-    let changes = pairs.iter().map(|&(at, start)| Change::new((from, at), (to, start), 1).velocity_change(speeds));
-    changes.fold(f64::INFINITY, f64::min)
+/// The least of the greatest accelerations of the figure in a transition of `length` frames at one of these pairs of frames, in cm/s^2, and by how much its
+/// velocity changes then, in cm a second.
+pub(super) fn acceleration(from: &Clip, to: &Clip, pairs: &[(usize, usize)], length: usize, speeds: [f64; 2]) -> [f64; 2] {
+    let changes = pairs.iter().map(|&(at, start)| {
+        let change = Change::new((from, at), (to, start), length);
+        [change.acceleration(speeds), far(change.velocity_change(speeds))]
+    });
+    changes.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default()
 }

@@ -1,6 +1,6 @@
 //! The table of feet: when which point of a foot is on the ground in each clip.
 
-use super::entries::{Clip, best, velocity_change};
+use super::entries::{Clip, acceleration, best};
 use super::transitions::length;
 use super::{Maker, Warning};
 use crate::machine::source::{Feet, Kind, Source, Start, Text, Transition};
@@ -14,8 +14,8 @@ use pantin_convert::import::text::quoted;
 
 /// The longest that a transition waits to begin, in seconds, where the file states none.
 const WITHIN: f64 = 0.5;
-/// The greatest acceleration that looks like a body's, in cm/s^2: shoes slide on a floor beyond it.
-const MOST_ACCELERATION: f64 = 700.0;
+/// The greatest acceleration that looks like a body's, in cm/s^2: twice that at which shoes slide on a floor, as it decreases to zero over a transition.
+const MOST_ACCELERATION: f64 = 1400.0;
 
 impl Maker<'_, '_> {
     /// The table's bytes.
@@ -79,7 +79,7 @@ impl Maker<'_, '_> {
                 let length = if row.kind == Kind::Cut { 1 } else { length(row, &self.played(target)?.1)?.into() };
                 let [from, to] = [self.clip_of(state)?, self.clip_of(target)?].map(|clip| &clips[usize::from(clip)]);
                 let speeds = [state, target].map(|state| state.speed.unwrap_or(1.0));
-                let pairs = pairs(row, from, to, speeds[0], length);
+                let pairs = pairs(row, from, to, speeds, length);
                 if row.sync.is_some() {
                     for &(at, start) in &pairs {
                         let [[a, b], [c, d]] = [at, start].map(|frame| (frame as u16).to_le_bytes());
@@ -87,11 +87,11 @@ impl Maker<'_, '_> {
                     }
                 }
                 index += 1;
-                let (change, seconds) = (velocity_change(from, to, &pairs, speeds), length as f64 * to.frame_time());
-                if row.kind != Kind::Cut && change > MOST_ACCELERATION * seconds {
+                let ([most, change], seconds) = (acceleration(from, to, &pairs, length, speeds), length as f64 * to.frame_time());
+                if row.kind != Kind::Cut && most > MOST_ACCELERATION {
                     let text = format!(
                         "{}: state {}: the velocity of the figure would change by {:.1} m/s in the {seconds:.2} s to {}, faster than a body can: \
-                         a longer transition, or a state between the two, looks better",
+                         a blend of both, or a state between the two, looks better",
                         file.at(transition.span()),
                         quoted(state.name.get_ref()),
                         change / 100.0,
@@ -128,13 +128,14 @@ impl Maker<'_, '_> {
 }
 
 /// Pairs of frames of the old and of the new clip at which a transition may begin.
-fn pairs(row: &Transition, from: &Clip, to: &Clip, speed: f64, length: usize) -> Vec<(usize, usize)> {
+fn pairs(row: &Transition, from: &Clip, to: &Clip, speeds: [f64; 2], length: usize) -> Vec<(usize, usize)> {
+    let [speed, _] = speeds;
     let start = match &row.start {
         Some(Start::Frame(frame)) => *frame as usize,
         _ => 0,
     };
     match row.sync {
-        Some(_) => best(from, to, Some(start).filter(|start| *start > 0), row.within.unwrap_or(WITHIN) * speed, length),
+        Some(_) => best(from, to, Some(start).filter(|start| *start > 0), row.within.unwrap_or(WITHIN) * speed, length, speeds),
         None if row.end.is_some() => vec![(from.frames() - 1, start)],
         None => (0..from.frames()).map(|frame| (frame, start)).collect(),
     }

@@ -10,8 +10,10 @@ use pantin_animator::Mask;
 use pantin_convert::Remedy;
 use pantin_convert::import::text::quoted;
 
-/// The longest that a layer takes to come: 255 of 64 parts of a second.
-const MOST_FADE: f64 = 255.0 / 64.0;
+/// The longest time of a row: 255 of 64 parts of a second.
+const MOST_SECONDS: f64 = 255.0 / 64.0;
+/// The least time in which a blend goes from one clip to the other, in seconds, where the file states none.
+const FOLLOW: f64 = 0.5;
 /// The speed 1, as a state's row stores it.
 const SPEED_ONE: f64 = 256.0;
 
@@ -26,12 +28,13 @@ impl<'s> Maker<'s, '_> {
         let name = quoted(state.name.get_ref());
         let place = self.place_of_clip(state, file);
         let clip = self.clip_of(state)?;
-        let (mut other, mut parameter) = (NONE, 0);
+        let (mut other, mut parameter, mut follow) = (NONE, 0, 0);
         if let Some(blend) = &state.blend {
             let place = file.at(blend.span());
             let blend = blend.get_ref();
             let named = self.clips.find(&blend.clip).and_then(|clip| Ok((clip, self.parameter(&blend.by)?)));
             (other, parameter) = named.with_context(|| format!("{place}: state {name}: blend"))?;
+            follow = time(blend.seconds.unwrap_or(FOLLOW)).with_context(|| format!("{place}: state {name}: blend"))?;
             let [own, its] = [clip, other].map(|index| &self.clips.all[usize::from(index)]);
             if own.1.form().check(its.1.form_ref()).is_err() {
                 let [own, its] = [quoted(own.0), quoted(its.0)];
@@ -56,15 +59,14 @@ impl<'s> Maker<'s, '_> {
         );
         let [low, high] = (rounded as i16).to_le_bytes();
         let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));
-        Ok([clip, other, parameter, 0, low, high, first, count])
+        Ok([clip, other, parameter, follow, low, high, first, count])
     }
 
     /// The row of a layer. Fails if a clip under it has another form.
     pub(super) fn layer_row(&mut self, layer: &Layer, source: &Source) -> Result<LayerRow> {
         let clip = self.clips.find(&layer.clip)?;
         let input = self.input(&layer.input)?;
-        let seconds = layer.seconds.unwrap_or(SECONDS);
-        ensure!((0.0..=MOST_FADE).contains(&seconds), "seconds: expected 0 to {MOST_FADE}, found {seconds}");
+        let fade = time(layer.seconds.unwrap_or(SECONDS))?;
         let rig = self.clips.all[usize::from(clip)].1.rig();
         let mut words = vec![0; Mask::words(&rig)];
         let mut mask = Mask::new(&rig, &mut words)?;
@@ -90,8 +92,14 @@ impl<'s> Maker<'s, '_> {
             }
         }
         let mut row = [0; 12];
-        (row[0], row[1], row[2]) = (clip, input, (seconds * 64.0).round() as u8);
+        (row[0], row[1], row[2]) = (clip, input, fade);
         row[4..].copy_from_slice(&states.to_le_bytes());
         Ok(LayerRow { row, joints })
     }
+}
+
+/// A time in the unit of a row.
+fn time(seconds: f64) -> Result<u8> {
+    ensure!((0.0..=MOST_SECONDS).contains(&seconds), "seconds: expected 0 to {MOST_SECONDS}, found {seconds}");
+    Ok((seconds * 64.0).round() as u8)
 }
