@@ -14,7 +14,7 @@ typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 #define NO_FINGER 0xffffu
 #define ABSENT 7u
 #define DISTANCE 4
-#define TRIAL_SCALE ((int32_t)16384)
+#define LARGEST_SCALE ((int32_t)16384)
 #define SAMPLES 48u
 /* Of a clip with more bytes of motion, the camera is chosen by the first of equal parts that are no larger. */
 #define SURVEYED_BYTES 16384u
@@ -996,7 +996,7 @@ void pantin_figure_widen(pantin_extent *e, const int16_t *place, int16_t radius)
     e->bottom = most(e->bottom, y + radius);
 }
 
-static int32_t fit(uint16_t pixels, int32_t covered) { return (((int32_t)pixels * 9 / 10) << 4) * (TRIAL_SCALE / 256) / most(covered / 256, 1); }
+static int32_t fit(uint16_t pixels, int32_t covered, int32_t trial) { return (((int32_t)pixels * 9 / 10) << 4) * 64 / most(covered / (trial / 64), 1); }
 
 /* Which way is up and where the figure faces, in Q15 of the world's axes. */
 static void orient(pantin_figure *f, bounds *b, uint8_t rig_up, int32_t *up, int32_t *facing) {
@@ -1039,7 +1039,7 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
                                     const void *context) {
     uint32_t now = player->frame, frame = 0;
     pantin_result result = player->started ? PANTIN_OK : pantin_restart(player);
-    int32_t up[3], facing[3], scale;
+    int32_t up[3], facing[3], scale, trial;
     uint8_t i, finer;
     bounds b;
     pantin_extent e;
@@ -1057,7 +1057,9 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
     finer = f->dotted ? 3 : 2;
     i = bits_of((uint32_t)f->size);
     f->ground_spacing = (uint8_t)(i > finer + 1 ? i - finer : 1);
-    set_camera(f, &b, up, facing, view, TRIAL_SCALE);
+    /* A fixed camera sees as far as a size to all sides, in 16 bits. */
+    trial = view->fixed ? LARGEST_SCALE / 4 : LARGEST_SCALE;
+    set_camera(f, &b, up, facing, view, trial);
     memset(&e, 0, sizeof e);
     frame = 0;
     while (next_sample(player, &frame, &result)) {
@@ -1069,10 +1071,10 @@ pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, con
         }
         cover(context, f, &e);
     }
-    scale = clamp(least(fit(f->height, e.bottom - e.top), fit(f->width, 2 * e.side)), 1, TRIAL_SCALE);
+    scale = clamp(least(fit(f->height, e.bottom - e.top, trial), fit(f->width, 2 * e.side, trial)), 1, LARGEST_SCALE);
     set_camera(f, &b, up, facing, view, scale);
     f->centre[0] = (int32_t)f->offset[0] * 16 + ((int32_t)f->width << 4) / 2;
-    f->centre[1] = (int32_t)f->offset[1] * 16 + ((int32_t)f->height << 4) / 2 - (e.top + e.bottom) / 2 * scale / TRIAL_SCALE;
+    f->centre[1] = (int32_t)f->offset[1] * 16 + ((int32_t)f->height << 4) / 2 - (e.top + e.bottom) / 2 * scale / trial;
     if (result == PANTIN_OK) result = pantin_seek(player, now);
     if (result == PANTIN_OK) return PANTIN_OK;
     /* It is still the frame to which the next call goes back. */

@@ -1,7 +1,7 @@
 //! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
 
 use crate::bounds::{Bounds, Orientation};
-use crate::camera::{Camera, Canvas, Level, PIXEL_BITS, View};
+use crate::camera::{Camera, CameraTarget, Canvas, Level, PIXEL_BITS, View};
 use crate::joint_info::JointInfo;
 use crate::kinematics::Kinematics;
 use crate::lines::{Dot, Ground, Head, Line, Lines, Visible};
@@ -49,8 +49,16 @@ enum Space {
     View,
 }
 
-/// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
-const TRIAL_SCALE: i32 = 1 << 14;
+/// The largest scale: 2^14 sixteenths of a pixel a size.
+const LARGEST_SCALE: i32 = 1 << 14;
+
+/// The scale at which a clip is looked at before the final one is known. A fixed camera sees as far as a size to all sides, in 16 bits.
+fn trial_scale(target: CameraTarget) -> i32 {
+    match target {
+        CameraTarget::Follow => LARGEST_SCALE,
+        CameraTarget::Fixed => LARGEST_SCALE / 4,
+    }
+}
 
 /// A clip is looked at in about this many places before it plays.
 const SAMPLES: u32 = 48;
@@ -217,17 +225,18 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         let height = if upwards { bounds.low[orientation.axis] } else { bounds.high[orientation.axis] };
         self.ground = Ground::new(orientation.axis, height, size, self.canvas);
         self.orientation = orientation;
-        set_camera(self, TRIAL_SCALE);
+        let trial = trial_scale(view.track);
+        set_camera(self, trial);
         let mut frame = Extent::default();
         poses(&mut |values, stand| {
             place(self, values, stand, Space::View);
             cover(&mut frame, self);
         });
-        let scale = frame.scale(self.canvas);
+        let scale = frame.scale(self.canvas, trial);
         set_camera(self, scale);
         let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
         let [right, down] = self.offset.map(|pixels| i32::from(pixels) << PIXEL_BITS);
-        self.camera.set_center(right + columns / 2, down + rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
+        self.camera.set_center(right + columns / 2, down + rows / 2 - (frame.top + frame.bottom) / 2 * scale / trial);
     }
 
     /// Takes a pose: forward kinematics, and where the camera sees the joints. A pose of another form than the clip's is refused.
@@ -538,12 +547,13 @@ impl Extent {
         self.bottom = self.bottom.max(y + radius);
     }
 
-    /// The scale at which all of it fits, with a margin of a 20th of the canvas.
-    fn scale(&self, canvas: Canvas) -> i32 {
+    /// The scale at which all of it fits, with a margin of a 20th of the canvas, if it was seen at a scale of `trial`.
+    fn scale(&self, canvas: Canvas, trial: i32) -> i32 {
+        let unit = trial / 64;
         let fit = |pixels: u16, covered: i32| {
             let room = (i32::from(pixels) * 9 / 10) << PIXEL_BITS;
-            room * (TRIAL_SCALE / 256) / (covered / 256).max(1)
+            room * 64 / (covered / unit).max(1)
         };
-        fit(canvas.height, self.bottom - self.top).min(fit(canvas.width, 2 * self.side)).clamp(1, TRIAL_SCALE)
+        fit(canvas.height, self.bottom - self.top).min(fit(canvas.width, 2 * self.side)).clamp(1, LARGEST_SCALE)
     }
 }

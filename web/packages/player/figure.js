@@ -377,7 +377,9 @@ export const figureOf = (clip, raw) => {
       height = (upward[axis] > 0 ? low : high)[axis];
       spacing = Math.max(1, bitLength(size) - (isDotted ? 3 : 2));
       centre = [0, 0];
-      setScale(TRIAL);
+      // A camera that stands still sees as far as a size to all sides, in 16 bits.
+      const trial = isFollowing ? TRIAL : TRIAL / 4;
+      setScale(trial);
       // What the figure covers, from the target.
       let top = 0;
       let bottom = 0;
@@ -393,9 +395,9 @@ export const figureOf = (clip, raw) => {
         if (cover) cover(widen);
         else if (crown) widen(...head());
       });
-      const fit = (pixels, covered) => Math.floor((16 * Math.floor((pixels * 9) / 10) * (TRIAL / 256)) / Math.max(1, Math.floor(covered / 256)));
+      const fit = (pixels, covered) => Math.floor((16 * Math.floor((pixels * 9) / 10) * 64) / Math.max(1, Math.floor((covered * 64) / trial)));
       setScale(clamp(Math.min(fit(rows, bottom - top), fit(width, 2 * side)), 1, TRIAL));
-      centre = [width * 8, rows * 8 - Math.trunc((Math.trunc((top + bottom) / 2) * scale) / TRIAL)];
+      centre = [width * 8, rows * 8 - Math.trunc((Math.trunc((top + bottom) / 2) * scale) / trial)];
     },
     // [lines] The ground, about the target: a grid that stays in its place.
     ground(stroke) {

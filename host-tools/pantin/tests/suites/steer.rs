@@ -3,7 +3,7 @@
 use pantin_animator::machine::{FEET_SECTION, Table};
 use pantin_animator::session::{Fault, Replay, Session};
 use pantin_convert::bank;
-use pantin_figure::View;
+use pantin_figure::{CameraTarget, View};
 use pantin_pictures::machine::playback::{Stage, joints, play, view_at_start};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -143,6 +143,33 @@ fn the_renderer_draws_a_figure_where_it_stands_as_it_draws_one_at_the_origin() {
         assert!(apart < 0.1, "{apart} cm");
     }
     assert!(turned > 100, "{turned}");
+}
+
+#[test]
+fn a_fixed_camera_sees_the_whole_session() {
+    let text = session();
+    let table = Table::of_bank(&BANK).unwrap();
+    let replay = || Replay::new(Session::new_checked(&text, &table).unwrap(), RATE);
+    let size = [240, 135];
+    for orbit in View::ORBITS {
+        let view = View { orbit, track: CameraTarget::Fixed, ..View::default() };
+        let mut stage = Stage::new(&BANK, size, view, Some(&replay())).unwrap();
+        let (mut least, mut most) = ([i16::MAX; 2], [i16::MIN; 2]);
+        play(&BANK, replay(), |character| {
+            stage.place(character)?.each_bone(|line| {
+                for (axis, ends) in [0, 1].map(|axis| [line.from[axis], line.to[axis]]).into_iter().enumerate() {
+                    least[axis] = least[axis].min(ends[0]).min(ends[1]);
+                    most[axis] = most[axis].max(ends[0]).max(ends[1]);
+                }
+            });
+            Ok(())
+        })
+        .unwrap();
+        let inside = |axis: usize| least[axis] >= 0 && usize::from(most[axis] as u16) <= size[axis] * 16;
+        // Most of one side is used.
+        let used = (0..2).any(|axis| usize::from((most[axis] - least[axis]) as u16) > size[axis] * 8);
+        assert!(inside(0) && inside(1) && used, "{orbit} degrees: {least:?} to {most:?}");
+    }
 }
 
 #[test]

@@ -18,6 +18,8 @@ const ACCELERATION: f64 = 0.02;
 const WITH_EASE: f64 = 1000.0;
 /// What a cm costs by which a foot moves over the ground.
 const DRAG: f64 = 2.0;
+/// What a cm of a detour of a foot costs, in cm over the ground.
+const DETOUR: f64 = 0.2;
 /// The height below which it does, in cm.
 const LOW_CM: f64 = 2.0;
 /// The farthest that a foot is held beside its place in the new clip, in cm: one that is farther steps there, and is lifted by at most this.
@@ -188,7 +190,7 @@ impl<'a> Change<'a> {
         cost
     }
 
-    /// How far a foot moves over the ground, in cm, while the transition lasts: a foot that rolls about one joint does not.
+    /// How far a foot moves over the ground, in cm, while the transition lasts: a foot that rolls about one joint does not. With it a part of its detour.
     fn drag(&self, foot: usize, glide: [f64; 2], held: bool, lift: f64) -> f64 {
         let (count, step) = (self.to.poses.len(), self.to.frame_time);
         let joints: Vec<(usize, [[f64; 3]; 2])> =
@@ -201,7 +203,9 @@ impl<'a> Change<'a> {
             let rest = |part: f64| (1.0 - part) * (1.0 - part);
             [rest(whole) * (1.0 + 2.0 * whole), rest(short) * short * swing as f64 * step]
         };
-        let mut total = 0.0;
+        // The velocity of the figure dies out in all of the time.
+        let [p, q] = self.velocity_change([1.0, 1.0]).map(|x| -x);
+        let (mut total, mut path, mut net) = (0.0, 0.0, [0.0; 2]);
         let mut is_held = held;
         for frame in 1..=self.frames {
             let at = if self.to.looped { (self.start + frame) % count } else { (self.start + frame).min(count - 1) };
@@ -211,21 +215,26 @@ impl<'a> Change<'a> {
             }
             let ([place, velocity], [place_before, velocity_before]) = (left(frame), left(frame - 1));
             let part = frame as f64 / self.frames as f64;
-            let (mut least, mut lowest) = (f64::INFINITY, f64::INFINITY);
+            let (mut least, mut lowest, mut own_way) = (f64::INFINITY, f64::INFINITY, None);
+            let coast = step * (1.0 - part) * (1.0 - part);
             for (joint, [[x, y, z], [u, v, w]]) in &joints {
                 let pose = self.to.poses[at][*joint];
                 let way = self.turned([pose[3] * step, pose[4] * step]);
-                let moved = |own: f64, glide: f64, speed: f64| {
-                    (own - glide) * (place - place_before) + speed * (velocity - velocity_before)
+                let moved = |own: f64, glide: f64, speed: f64, figure: f64| {
+                    (own - glide) * (place - place_before) + (speed - figure) * (velocity - velocity_before) + figure * coast
                 };
-                least = least.min((way[0] + moved(*x, glide[0], *u)).hypot(way[1] + moved(*y, glide[1], *v)));
+                let way = [way[0] + moved(*x, glide[0], *u, p), way[1] + moved(*y, glide[1], *v, q)];
+                least = least.min(far(way));
+                own_way.get_or_insert(way);
                 lowest = lowest.min(pose[2] + z * place + w * velocity - self.to.ground[*joint]);
             }
             if lowest + 4.0 * part * (1.0 - part) * lift < LOW_CM {
                 total += least;
             }
+            let [x, y] = own_way.unwrap_or_default();
+            (path, net) = (path + x.hypot(y), [net[0] + x, net[1] + y]);
         }
-        total
+        total + DETOUR * (path - far(net))
     }
 }
 
