@@ -494,6 +494,12 @@ static int lands(const pantin_foot *f, int16_t shift, uint8_t point, const int64
     return calm || (s->before == point && rests);
 }
 
+/* Lets go of a foot that cannot be where it was held any longer: it steps back to its clip. */
+static void let_go(pantin_foot *f, int16_t shift) {
+    release(f, shift, length_of(f, shift) / 4);
+    f->state.steps = 1;
+}
+
 /* Keeps a held foot at its anchor, which is a way from where the clip has it. */
 static void keep(pantin_foot *f, int16_t shift, const int64_t *way, int calm, uint32_t elapsed_us) {
     pantin_foot_state *s = &f->state;
@@ -506,10 +512,7 @@ static void keep(pantin_foot *f, int16_t shift, const int64_t *way, int calm, ui
         s->since_us[1] = 0;
         s->level = (uint8_t)!calm;
     }
-    if (wide_size(way[0]) > far || wide_size(way[1]) > far) {
-        release(f, shift, far);
-        s->steps = 1;
-    }
+    if (wide_size(way[0]) > far || wide_size(way[1]) > far) let_go(f, shift);
 }
 
 /* A leg in a pose, and where its ankle is to be: in figure units. */
@@ -545,6 +548,25 @@ static void want(const posed_foot *p, wanted_leg *leg) {
         if (way[i] != 0) leg->is_wanted = 1;
         leg->target[i] = sum(leg->at[3].place[i], way[i]);
     }
+}
+
+/* The distance of a place from the hip. */
+static uint64_t from_hip(const wanted_leg *leg, const int32_t *place) {
+    uint64_t square = 0;
+    uint8_t i;
+    for (i = 0; i < 3; i++) {
+        uint64_t way = (uint64_t)wide_size(difference(place[i], leg->at[1].place[i]));
+        square += way * way;
+    }
+    return pantin_animator_root(square);
+}
+
+/* Whether a target stretches the leg: more than a 32nd of it beyond what the pose does, and nearly as far as it goes. */
+static int overreaches(const pantin_foot *f, const wanted_leg *leg) {
+    uint64_t own = from_hip(leg, leg->at[3].place), greatest = (uint64_t)f->farthest;
+    own += greatest / 32;
+    greatest -= greatest / 64;
+    return from_hip(leg, leg->target) > (own > greatest ? own : greatest);
 }
 
 /* Lets time pass for a foot whose point `contact` is on the ground in the clip. */
@@ -593,6 +615,10 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         point_with_left(s, at, s->at);
     }
     want(p, leg);
+    if (s->doing == LOCKED && leg->is_wanted && overreaches(p->foot, leg)) {
+        come_to_rest(s);
+        let_go(p->foot, p->shift);
+    }
 }
 
 /* ---- Both feet ---- */

@@ -144,6 +144,16 @@ impl<'a> Limb<'a> {
         self.greatest
     }
 
+    /// Whether a target stretches the limb: more than a 32nd of it beyond what the pose does, and nearly as far as it goes.
+    pub(crate) fn overreaches(&self, [_, hip, _, end]: &[Joint; 4], target: Vector) -> bool {
+        let far = |place: Vector| {
+            let [x, y, z] = sub(place, hip.place).map(|x| u64::from(x.unsigned_abs()).pow(2));
+            (x + y + z).isqrt()
+        };
+        let (own, greatest) = (far(end.place), u64::from(self.greatest.unsigned_abs()));
+        far(target) > (own + greatest / 32).max(greatest - greatest / 64)
+    }
+
     /// [`Limb::reach`] in figure units, where [`Limb::places`] are known.
     #[inline(never)]
     pub(crate) fn solve_from(&mut self, places: &[Joint; 4], pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {

@@ -201,6 +201,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       eases = eases.map(([d, v, since], axis) => [d, v, axis < 2 || isLevel ? 0 : since]);
       isLevel = false;
     };
+    // It steps back to its clip.
+    const letGo = () => release(true, length() >> 2);
     const left = () => {
       const [a, b, height] = eases.map(([d, v, since], axis) => {
         const part = partOf(since, wholeOf(axis));
@@ -248,7 +250,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
           return axis < 2 || isLevel ? [d, elapsed ? narrow(trunc((((d - ease[0]) | 0) * RELEASE) / elapsed)) : 0, 0] : ease;
         });
         isLevel &&= !isCalm;
-        if (farther(way) > length() >> 2) release(true, length() >> 2);
+        if (farther(way) > length() >> 2) letGo();
       } else if (eases.every(([, , since], axis) => since === wholeOf(axis))) {
         steps = false;
         lift = 0;
@@ -256,7 +258,16 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       before = contact;
       if (contact >= 0) last = withLeft();
       const way = toPose(left()).map((x) => shifted(x, shift));
-      if (anyBit(way)) return [legIn(known), way];
+      if (!anyBit(way)) return;
+      const own = legIn(known);
+      // One whose leg would be stretched: more than a 32nd of it beyond what the pose does, and nearly as far as it goes.
+      const [, [hip], , [ankle]] = own;
+      const far = (place) => floor(sqrt(squareOf(difference(place, hip))));
+      if (point >= 0 && far(sum(ankle, way)) > max(far(ankle) + (farthest >> 5), farthest - (farthest >> 6))) {
+        settle();
+        letGo();
+      }
+      return [own, way];
     };
     // How far the foot is from where the clip that was entered will have it, its place, and whether it stays on the ground; nothing if it was and is in the air.
     const wayOf = ([toWorld], [toEnd], contact) => {

@@ -248,8 +248,13 @@ impl<'a> Foot<'a> {
         }
         let shift = self.limb.shift();
         let way = frame.to_pose(left).map(|x| shifted(x, shift));
-        let [.., ankle] = places;
-        (way != [0; 3]).then(|| Wanted { places, target: pantin_math::vector::add(ankle.place, way) })
+        let [.., ankle] = &places;
+        let target = pantin_math::vector::add(ankle.place, way);
+        if way != [0; 3] && self.held().is_some() && self.limb.overreaches(&places, target) {
+            self.rest();
+            self.let_go();
+        }
+        (way != [0; 3]).then_some(Wanted { places, target })
     }
 
     /// Whether a foot that is not held is to be held from now on.
@@ -280,9 +285,14 @@ impl<'a> Foot<'a> {
         }
         let most = i64::from(self.limb.length() / 4);
         if a.abs() > most || b.abs() > most {
-            self.release(most);
-            self.steps = true;
+            self.let_go();
         }
+    }
+
+    /// Lets go of a foot that cannot be where it was held any longer: it steps back to its clip.
+    fn let_go(&mut self) {
+        self.release(i64::from(self.limb.length() / 4));
+        self.steps = true;
     }
 }
 
