@@ -487,11 +487,10 @@ static int lands(const pantin_foot *f, int16_t shift, uint8_t point, const int64
     const pantin_foot_state *s = &f->state;
     /* Half of the leg in a second. */
     int64_t slow = (int64_t)length_of(f, shift) * elapsed_us / 2000000;
-    uint8_t i, rests = 1;
+    uint8_t i, rests = s->before == point;
     if (s->before == NO_POINT) return 1;
-    if (s->doing == RELEASED && s->steps) return calm && s->since_us[0] >= s->step_us;
     for (i = 0; i < 3; i++) rests = (uint8_t)(rests && wide_size(wide_difference(at[i], s->at[i])) <= slow);
-    return calm || (s->before == point && rests);
+    return s->steps ? calm && s->since_us[0] >= s->step_us && rests : calm || rests;
 }
 
 /* Lets go of a foot that cannot be where it was held any longer: it steps back to its clip. */

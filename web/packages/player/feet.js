@@ -236,7 +236,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         const place = withLeft();
         // Half of the leg in a second.
         const rests = before === contact && apart(place, last).every((x) => size(x) <= (big(length()) * big(elapsed)) / 2000000n);
-        if (before < 0 || (steps ? isCalm && eases[0][2] === whole : isCalm || rests)) {
+        if (before < 0 || (steps ? isCalm && eases[0][2] === whole && rests : isCalm || rests)) {
           settle();
           point = contact;
           anchor = place;
@@ -252,7 +252,6 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         isLevel &&= !isCalm;
         if (farther(way) > length() >> 2) letGo();
       } else if (eases.every(([, , since], axis) => since === wholeOf(axis))) {
-        steps = false;
         lift = 0;
       }
       before = contact;

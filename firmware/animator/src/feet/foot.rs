@@ -262,11 +262,11 @@ impl<'a> Foot<'a> {
         let [since, _] = self.since_us;
         // Half of the leg in a second.
         let slow = (i64::from(self.limb.length()) * i64::from(elapsed_us)) / 2_000_000;
-        let rests = difference(at, self.at).iter().all(|way| way.abs() <= slow);
-        match self.state {
-            _ if self.before.is_none() => true,
-            State::Released if self.steps => calm && since >= self.step_us,
-            _ => calm || (self.before == Some(point) && rests),
+        let rests = self.before == Some(point) && difference(at, self.at).iter().all(|way| way.abs() <= slow);
+        match self.before {
+            None => true,
+            Some(_) if self.steps => calm && since >= self.step_us && rests,
+            Some(_) => calm || rests,
         }
     }
 
