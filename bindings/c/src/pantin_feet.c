@@ -658,9 +658,8 @@ static int next_entry(const pantin_character *c, uint8_t transition, uint32_t *f
     uint32_t behind, from, nearest = 0xffffffffu;
     uint64_t way;
     if (t->speed <= 0) return 0;
-    /* Not before the transition that runs has ended: in 2^-16 of a frame. */
-    way = ((uint64_t)a->left << 16) - ((uint64_t)a->rest_ns << 16) / t->clip.frame_time_ns;
-    behind = (uint32_t)((part + (way * (uint32_t)t->speed >> 16) + 0xffff) >> 16);
+    /* Not before the transition that runs has ended, rounded up to its whole frames: in 2^-16 of a frame. */
+    behind = (part + a->left * (uint32_t)t->speed + 0xffff) >> 16;
     from = t->player.frame + behind;
     if (t->clip.looped) from %= t->clip.frames;
     for (entry = 0; entry < f->entries; entry++) {

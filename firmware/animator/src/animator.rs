@@ -202,7 +202,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         increment
     }
 
-    pub(crate) fn transition_part(&self) -> U0F16 {
+    fn transition_part(&self) -> U0F16 {
         let frame_time = u64::from(self.track.clip().frame_time_ns());
         U0F16::from_bits((u64::from(self.rest_ns) << 16).checked_div(frame_time).unwrap_or(0) as u16)
     }

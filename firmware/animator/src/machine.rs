@@ -422,9 +422,8 @@ pub(crate) fn next_entry(table: &FeetTable<'_>, transition: u8, animator: &Anima
     }
     let clip = track.clip();
     let part = u64::from(track.part().to_bits());
-    // In 2^-16 of a frame, and below 2^27 and 2^29.
-    let rest = (u64::from(left) << 16).saturating_sub(u64::from(animator.transition_part().to_bits()));
-    let ended = part + ((rest * u64::from(speed.unsigned_abs())) >> 16);
+    // In 2^-16 of a frame, rounded up to whole frames of the transition.
+    let ended = part + u64::from(left) * u64::from(speed.unsigned_abs());
     let behind = ended.div_ceil(1 << 16) as u32;
     let from = track.frame() + behind;
     let from = if clip.looped() { from.checked_rem(clip.frames()).unwrap_or(0) } else { from };

@@ -404,10 +404,6 @@ export const animatorOf = (first, carrier) => {
     get left() {
       return left;
     },
-    // Of the frame of the transition, in ns.
-    get rest() {
-      return rest;
-    },
     get place() {
       return root.place;
     },

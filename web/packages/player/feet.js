@@ -402,9 +402,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     next: (transition) => {
       const { clip, player, speed } = track;
       const part = floor(track.rest / clip.frameTimeNs);
-      // Not before the transition that runs has ended: in 65536ths of a frame.
-      const rest = animator.left * 65536 - floor((animator.rest * 65536) / clip.frameTimeNs);
-      const behind = Math.ceil((part + Number((big(rest) * big(max(speed, 0))) >> 16n)) / 65536);
+      // Not before the transition that runs has ended, rounded up to its whole frames: in 65536ths of a frame.
+      const behind = Math.ceil((part + animator.left * max(speed, 0)) / 65536);
       const from = clip.looped ? (player.frame + behind) % clip.frames : player.frame + behind;
       let least = Infinity;
       let start;

@@ -54,7 +54,9 @@ impl Recipe {
     fn edit(&self, imported: Imported, files: &dyn Files) -> Result<Edited, Error> {
         let mut notes = imported.notes;
         let edited = self.edits.apply(imported.motion, files)?;
-        // A cut that opens a loop needs no advice if the loop is closed again.
+        // Scales that an edit has left out need no advice, nor does a cut that opens a loop if the loop is closed again.
+        let scales = edited.motion.rig.scalars.iter().any(|scalar| scalar.name.contains(".scale."));
+        notes.retain(|note| scales || note.remedy != Some(Remedy::DropScales));
         let needed = |note: &Note| !(self.options.looped && note.remedy == Some(Remedy::MakeLoop));
         notes.extend(edited.notes.into_iter().filter(needed));
         Ok(Edited { motion: edited.motion, notes })

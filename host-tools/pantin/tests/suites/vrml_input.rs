@@ -2,8 +2,10 @@
 
 use super::processor_time::within;
 use crate::told::Told;
-use pantin_convert::fk;
+use pantin_convert::edit::Edits;
+use pantin_convert::import::Disk;
 use pantin_convert::import::ImportOptions;
+use pantin_convert::{Memory, Recipe, fk};
 
 fn load_as(world: &str, options: &ImportOptions) -> Result<Told, String> {
     let name = format!("pantin-vrml-{}-{:?}.wrl", std::process::id(), std::thread::current().id());
@@ -91,6 +93,15 @@ fn a_scale_that_changes_moves_the_joints_below_and_becomes_scalars() {
     assert!((values[15] - 1.5).abs() < 1e-12 && leg.motion.rig.scalars[scale].full_scale == 3.0);
     assert!(leg.warnings.iter().any(|warning| warning.contains("the scale of `knee` changes")), "{:?}", leg.warnings);
     assert!(leg.error_cm < 1e-9, "{}", leg.error_cm);
+    // Who leaves the scale out is not told how.
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("leg.wrl"), &world).unwrap();
+    let said = |drop: &str| {
+        let recipe = Recipe::new().import(ImportOptions::new().cm_per_unit(1.0)).edits(Edits::new().drop(drop));
+        let notes = recipe.edited(&Disk::new(Memory::default()), &folder.path().join("leg.wrl")).unwrap().notes;
+        notes.iter().any(|note| note.text.contains("the scale of `knee`"))
+    };
+    assert!(said("skin.*") && !said("*.scale.*"));
 }
 
 #[test]

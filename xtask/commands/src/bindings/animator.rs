@@ -18,7 +18,7 @@ use super::{KEYS, host_program_with, output};
 pub const MOST_CODE: u64 = 49 * 512;
 
 /// Bytes of code that feet may take on a Cortex-M0 or RV32IMC, beside the animator and figures.
-pub const MOST_FEET_CODE: u64 = 12 * 1024;
+pub const MOST_FEET_CODE: u64 = 25 * 512;
 
 /// Scripts for each group of clips, their lines, and updates of the state machine of our character.
 const SCRIPTS: u64 = 6;
