@@ -809,7 +809,7 @@ static void solve_all(pantin_animator *a, uint8_t frames) {
     for (c = 0; c < a->channels; c++) pantin_animator_solve(frames, &a->memory->offsets[c]);
 }
 
-/* Whether the cubics are solved again with so many frames left: not before velocities that die out in fewer frames have done so. */
+/* Whether the cubics are solved again with this number of frames left: not before velocities that die out in fewer frames have done so. */
 static int solves_at(const pantin_animator *a, uint8_t left) {
     if (left == a->left_then) return left > 0;
     return (left == 2 || left == 32 || left == 128) && (left < a->left_then || !a->left_then);
@@ -1411,7 +1411,7 @@ typedef struct {
     int32_t speed;
     pantin_transition kind;
     uint8_t frames;
-    const pantin_track *second; /* of which a weight is mixed in, or NULL */
+    const pantin_track *second; /* a weight of it is mixed in; or NULL */
     uint16_t weight;
 } change;
 
@@ -2085,7 +2085,7 @@ static pantin_result make(pantin_character *c, uint32_t transition, uint32_t fra
     change how;
     pantin_animator_read_state(c, to, &row);
     result = open_clip(c, row.clip, &clip);
-    /* The pose of this instant, of which it has the first clip's part alone. */
+    /* Until here the pose has the first clip's part alone. */
     if (result == PANTIN_OK && c->blending) result = blend(c);
     if (result != PANTIN_OK) return result;
     if (frame == ROW_FRAME) {

@@ -299,7 +299,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.locate();
     }
 
-    /// Whether the cubics are solved again with so many frames left.
+    /// Whether the cubics are solved again with this number of frames left.
     #[inline(always)]
     pub(crate) fn solves_at(&self, left: u8) -> bool {
         left == self.left_then || (AGAIN.contains(&left) && (left < self.left_then || self.left_then == 0))

@@ -63,11 +63,12 @@ pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, &Animator<'
 /// How often the state changes in one instant, and at how many instants in the middle of an update, at most.
 const CHANGES: usize = 4;
 
-/// Inputs that a transition looks at: those that were fired or are held, and those that are not held.
+/// What a transition looks at: inputs that were fired or are held, those that are not held, and events after a number of them.
 #[derive(Clone, Copy, Debug)]
 struct Inputs {
     down: u32,
     up: u32,
+    heard: usize,
 }
 
 /// What an update did.
@@ -207,10 +208,10 @@ impl<'a> Machine<'a> {
         mut second: Option<&mut Track<'b, '_>>,
     ) -> Result<Updated, Error> {
         let mut updated = Updated::default();
-        let (mut left_ns, mut heard) = (elapsed_ns, 0);
-        let before = Inputs { down: self.held & self.held_before, up: !(self.held | self.held_before) };
+        let mut left_ns = elapsed_ns;
+        let mut before = Inputs { down: self.held & self.held_before, up: !(self.held | self.held_before), heard: 0 };
         for _ in 0..CHANGES {
-            heard = animator.events().iter().count();
+            before.heard = animator.events().iter().count();
             let entry = self
                 .waiting
                 .and_then(|waiting| entries.and_then(|(table, find)| Some((waiting, find(&table, waiting, animator)?))));
@@ -228,16 +229,16 @@ impl<'a> Machine<'a> {
                 self.blend(bank, animator, second.as_deref_mut())?;
                 continue;
             }
-            let Some(state) = self.enter_all(entries, before, before, heard, bank, animator, second.as_deref_mut())? else {
+            let Some(state) = self.enter_all(entries, before, before, bank, animator, second.as_deref_mut())? else {
                 break;
             };
             updated.entered = Some(state);
             self.blend(bank, animator, second.as_deref_mut())?;
         }
         animator.hold(left_ns);
-        let (fired, held) = (self.fired, Inputs { down: self.held, up: !self.held });
-        let now = Inputs { down: fired | held.down, up: held.up };
-        updated.entered = self.enter_all(entries, now, held, heard, bank, animator, second.as_deref_mut())?.or(updated.entered);
+        let held = Inputs { down: self.held, up: !self.held, ..before };
+        let now = Inputs { down: self.fired | held.down, ..held };
+        updated.entered = self.enter_all(entries, now, held, bank, animator, second.as_deref_mut())?.or(updated.entered);
         self.blend(bank, animator, second)?;
         Ok(updated)
     }
@@ -249,29 +250,27 @@ impl<'a> Machine<'a> {
         entries: Option<Entries<'_>>,
         first: Inputs,
         then: Inputs,
-        heard: usize,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
         mut second: Option<&mut Track<'b, '_>>,
     ) -> Result<Option<u8>, Error> {
-        let (mut inputs, mut heard, mut last) = (first, heard, None);
+        let (mut inputs, mut last) = (first, None);
         // Conditions that contradict each other change the state once.
         let mut been = 0;
         for _ in 0..CHANGES {
             been |= state_bit(self.state);
-            let Some(state) = self.enter(entries, inputs, heard, been, bank, animator, second.as_deref_mut())? else { break };
-            (inputs, heard, last) = (then, animator.events().iter().count(), Some(state));
+            let Some(state) = self.enter(entries, inputs, been, bank, animator, second.as_deref_mut())? else { break };
+            (inputs, last) = (Inputs { heard: animator.events().iter().count(), ..then }, Some(state));
         }
         Ok(last)
     }
 
     /// Takes the first transition that may be taken now. Once there is more than one state in `been`, a transition that leads to one of them is
-    /// left out. Of the events, those after the first `heard` count.
+    /// left out.
     fn enter<'b>(
         &mut self,
         entries: Option<Entries<'_>>,
         inputs: Inputs,
-        heard: usize,
         been: u64,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
@@ -286,7 +285,7 @@ impl<'a> Machine<'a> {
             let row = self.table.transition(index).filter(|row| !any || row.to != state)?;
             // In its first state, a machine may start the same state again.
             let back = been != state_bit(state) && been & state_bit(row.to) != 0;
-            (!back && self.happens(row.cause, inputs, heard, animator)).then_some(index)
+            (!back && self.happens(row.cause, inputs, animator)).then_some(index)
         });
         // One that waits is made unless one before it happens, and at the end of its clip.
         let waiting = self.waiting.map(usize::from);
@@ -323,7 +322,7 @@ impl<'a> Machine<'a> {
         };
         let frame = begun(frame, &clip, row.speed);
         if self.blending {
-            // The pose of this instant, of which it has the first clip's part alone.
+            // Until here the pose has the first clip's part alone.
             self.blend(bank, animator, second.as_deref_mut())?;
         }
         let mixed = second.as_deref().filter(|_| self.blending).map(|second| (second, self.mixed));
@@ -332,12 +331,12 @@ impl<'a> Machine<'a> {
         Ok(Some(wanted.to))
     }
 
-    fn happens(&self, cause: Cause, inputs: Inputs, heard: usize, animator: &mut Animator<'_, '_>) -> bool {
+    fn happens(&self, cause: Cause, inputs: Inputs, animator: &mut Animator<'_, '_>) -> bool {
         match cause {
             Cause::End => animator.track().ended(),
             Cause::Input(input) => inputs.down & bit(input) != 0,
             Cause::Released(input) => inputs.up & bit(input) != 0,
-            Cause::Event(id) => animator.events().iter().skip(heard).any(|fired| fired.id == u32::from(id)),
+            Cause::Event(id) => animator.events().iter().skip(inputs.heard).any(|fired| fired.id == u32::from(id)),
             Cause::Above(parameter, threshold) => self.get(parameter) > threshold,
             Cause::Below(parameter, threshold) => self.get(parameter) < threshold,
         }

@@ -159,7 +159,7 @@ export const characterOf = (rig, table, open, lendFeet) => {
     const clip = clipOf(index);
     // Without footsteps it begins at its first frame.
     const frame = at ?? (first === NOTHING ? max(0, floor(inStep(track, clip, 0) / 65536)) : first);
-    // The pose of this instant, of which it has the first clip's part alone.
+    // Until here the pose has the first clip's part alone.
     if (isBlending) blend();
     animator.change(clip, begun(frame, clip, speed), speed, kind, frames, isBlending && second, isBlending ? mixed : 0);
     state = to;
