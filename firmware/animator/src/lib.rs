@@ -31,7 +31,8 @@
 //! # What a transition costs
 //!
 //! At the switch, the pose and the velocity of each channel are kept, the player starts the new clip in the same memory, and the
-//! differences become a cubic that ends at zero, with velocity zero, after the given number of frames. At speed 1 the player's own additions carry it, so
+//! differences become a cubic that ends at zero, with velocity zero, after the given number of frames; of more than a quarter of a second,
+//! the velocities' part ends after a quarter, and the cubics are solved again there. At speed 1 the player's own additions carry it, so
 //! that a frame takes little more than without a transition. At other speeds, and where the clip ends or a loop begins again, each channel that has a
 //! difference costs three more additions a frame and one that adds the difference to the clip. At the end the pose is the clip's, bit for bit. Another
 //! transition can start at any time: the difference that is left is a part of the pose from which it starts.
