@@ -102,27 +102,24 @@ impl<'a> Animator<'a, '_> {
 
     /// Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset.
     fn take_motion(&mut self, clip: &Clip<'a>, mixed: Option<(&Track<'a, '_>, Weight)>) {
-        let ratio = ratio(self.track.clip(), clip);
+        let own = ratio(self.track.clip(), clip);
         self.track.leave_offsets();
         let running = self.left > 0;
         for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
-            let own = if running { scaled(offset.v, ratio) } else { 0 };
-            (offset.d, offset.v) = (*value, value.wrapping_add(own));
+            let v = if running { scaled(offset.v, own) } else { 0 };
+            (offset.d, offset.v) = (*value, value.wrapping_add(v));
         }
-        let speed = (i64::from(self.track.speed().to_bits()) * ratio) >> 16;
-        let (second, weight) = mixed.unzip();
-        let own = |v: i32| weight.map_or(v, |weight| weight.rest().of(v));
-        for (slot, v) in self.track.velocities() {
-            if let Some(offset) = self.offsets.get_mut(slot) {
-                offset.v = offset.v.wrapping_add(scaled(own(v), speed));
+        let mut add = |track: &Track<'_, '_>, weight: Weight| {
+            let speed = (i64::from(track.speed().to_bits()) * ratio(track.clip(), clip)) >> 16;
+            for (slot, v) in track.velocities() {
+                if let Some(offset) = self.offsets.get_mut(slot) {
+                    offset.v = offset.v.wrapping_add(scaled(weight.of(v), speed));
+                }
             }
-        }
-        let (Some(second), Some(weight)) = (second, weight) else { return };
-        let speed = (i64::from(second.speed().to_bits()) * self::ratio(second.clip(), clip)) >> 16;
-        for (slot, v) in second.velocities() {
-            if let Some(offset) = self.offsets.get_mut(slot) {
-                offset.v = offset.v.wrapping_add(scaled(weight.of(v), speed));
-            }
+        };
+        add(&self.track, mixed.map_or(Weight::ONE, |(_, weight)| weight.rest()));
+        if let Some((second, weight)) = mixed {
+            add(second, weight);
         }
     }
 

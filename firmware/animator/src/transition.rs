@@ -1,5 +1,7 @@
 //! How one clip follows another, and the difference that this leaves behind, one channel: a segment of the decoder's own kind that ends at zero.
 
+use core::time::Duration;
+
 /// How one clip follows another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -7,7 +9,7 @@ pub enum Transition {
     /// At once. The pose jumps; place and heading do not.
     Cut,
     /// The difference of the poses dies out as a cubic in this many frames of the new clip, after which the pose is exactly the clip's; that of their
-    /// velocities in a quarter of a second at most, so that limbs do not swing past both motions, but that of the figure's way in all of them. 0 frames
+    /// velocities in [`SWING`](Transition::SWING) at most, so that limbs do not swing past both motions, but that of the figure's way in all of them. 0 frames
     /// are a cut; 1 frame keeps the old pose for the first instant alone.
     Inertialized(u8),
     /// The difference of the poses alone dies out: the old motion stops at once. For comparison.
@@ -15,6 +17,9 @@ pub enum Transition {
 }
 
 impl Transition {
+    /// The time in which a difference of velocities dies out in a transition, at most: a quarter of a second.
+    pub const SWING: Duration = Duration::from_millis(250);
+
     pub(crate) fn frames(self) -> u8 {
         match self {
             Transition::Cut => 0,
@@ -123,12 +128,9 @@ pub(crate) struct Cubic {
     inverse: Ratio,
 }
 
-/// The time in ns in which a difference of velocities dies out, at most.
-const SWING_NS: u32 = 250_000_000;
-
 /// The frames of this time each in which velocities die out during a transition that takes more of them.
 pub(crate) fn swing(frames: u8, frame_time_ns: u32) -> Option<u8> {
-    let few = SWING_NS.div_ceil(frame_time_ns.max(1)).max(2);
+    let few = Transition::SWING.subsec_nanos().div_ceil(frame_time_ns.max(1)).max(2);
     u8::try_from(few).ok().filter(|few| few.saturating_add(2) < frames)
 }
 

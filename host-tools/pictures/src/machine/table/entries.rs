@@ -1,6 +1,7 @@
 //! When a transition looks right: pairs of frames of two clips that are alike in pose, speed and feet.
 
 use anyhow::Result;
+use pantin_animator::Transition;
 use pantin_convert::Memory;
 use pantin_convert::edit::contacts::{Contact, Foot};
 use pantin_convert::fk::all_positions;
@@ -25,8 +26,6 @@ const LOW_CM: f64 = 2.0;
 /// The farthest that a foot is held beside its place in the new clip, in cm: one that is farther steps there, and is lifted by at most this.
 const HELD_CM: f64 = 6.0;
 const LIFT_CM: f64 = 9.0;
-/// The seconds in which a difference in velocity dies out in a transition, at most.
-const SWING: f64 = 0.25;
 /// Seconds of a clip that is no loop in which a transition may enter it.
 const FIRST: f64 = 0.2;
 /// Frames of a clip that are compared at most.
@@ -103,6 +102,10 @@ struct Change<'a> {
     frames: usize,
     /// Cosine and sine of the turn about the vertical axis that brings the new pose to the old one.
     turn: [f64; 2],
+    /// For each foot whether it is on the ground in both clips, and, if it is in one, how far it is in the old clip from where it is in the new one.
+    grounded: Vec<(bool, Option<[f64; 2]>)>,
+    /// The way to a foot that is on the ground in both clips, which the figure glides.
+    glide: [f64; 2],
 }
 
 impl<'a> Change<'a> {
@@ -113,7 +116,20 @@ impl<'a> Change<'a> {
             across += q[0] * p[1] - q[1] * p[0];
         }
         let (sin, cos) = across.atan2(along).sin_cos();
-        Change { from, to, at, start, frames: frames.max(1), turn: [cos, sin] }
+        let mut change =
+            Change { from, to, at, start, frames: frames.max(1), turn: [cos, sin], grounded: Vec::new(), glide: [0.0; 2] };
+        let foot = |(old, new): (&Option<usize>, &Option<usize>)| {
+            let way = |joint| {
+                let [[x, y, _], _] = change.differs(joint);
+                [x, y]
+            };
+            (old.is_some() && new.is_some(), new.or(*old).map(way))
+        };
+        let grounded: Vec<_> = from.feet[at].iter().zip(&to.feet[start]).map(foot).collect();
+        let both = grounded.iter().filter_map(|&(both, way)| way.filter(|_| both));
+        change.glide = both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default();
+        change.grounded = grounded;
+        change
     }
 
     fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -132,7 +148,7 @@ impl<'a> Change<'a> {
     /// The greatest acceleration of the figure in cm/s^2: where it begins, by its change of velocity and by its glide, or where it ends, by the glide.
     fn acceleration(&self, speeds: [f64; 2]) -> f64 {
         let seconds = self.frames as f64 * self.to.frame_time;
-        let [glide, change] = [self.glide(), self.velocity_change(speeds)];
+        let [glide, change] = [self.glide, self.velocity_change(speeds)];
         let at = |axis: usize| [6.0 * glide[axis] / seconds.powi(2), 2.0 * change[axis] / seconds];
         let ([a, b], [x, y]) = (at(0), at(1));
         (a + b).hypot(x + y).max(a.hypot(x))
@@ -157,30 +173,11 @@ impl<'a> Change<'a> {
         (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64 + self.feet() + ACCELERATION * hasty
     }
 
-    /// For each foot whether it is on the ground in both clips, and, if it is in one, how far it is in the old clip from where it is in the new one.
-    fn grounded(&self) -> Vec<(bool, Option<[f64; 2]>)> {
-        let feet = self.from.feet[self.at].iter().zip(&self.to.feet[self.start]);
-        let foot = |(from, to): (&Option<usize>, &Option<usize>)| {
-            let way = |joint| {
-                let [[x, y, _], _] = self.differs(joint);
-                [x, y]
-            };
-            (from.is_some() && to.is_some(), to.or(*from).map(way))
-        };
-        feet.map(foot).collect()
-    }
-
-    /// The way to a foot that is on the ground in both clips, which the figure glides.
-    fn glide(&self) -> [f64; 2] {
-        let both = self.grounded().into_iter().filter_map(|(both, way)| way.filter(|_| both));
-        both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default()
-    }
-
     /// What feet cost: those that are on the ground in one clip alone or elsewhere, and those that move over the ground.
     fn feet(&self) -> f64 {
-        let glide = self.glide();
+        let glide = self.glide;
         let mut cost = GLIDE * far(glide);
-        for (foot, (both, way)) in self.grounded().into_iter().enumerate() {
+        for (foot, &(both, way)) in self.grounded.iter().enumerate() {
             let rest = way.map_or(0.0, |[x, y]| far([x - glide[0], y - glide[1]]));
             let held = both && rest < HELD_CM;
             cost += STEP * rest + if way.is_none() || held { 0.0 } else { OTHER_FOOT_CM };
@@ -196,7 +193,7 @@ impl<'a> Change<'a> {
         let joints: Vec<(usize, [[f64; 3]; 2])> =
             self.to.joints[foot].iter().map(|&joint| (joint, self.differs(joint))).collect();
         // What is left of a difference in place and in velocity, of a cm and of a cm a second.
-        let swing = self.frames.min((SWING / step).ceil() as usize).max(1);
+        let swing = self.frames.min((Transition::SWING.as_secs_f64() / step).ceil() as usize).max(1);
         let left = |frame: usize| {
             let part = |frames: usize| (frame as f64 / frames as f64).min(1.0);
             let (whole, short) = (part(self.frames), part(swing));
