@@ -6,7 +6,7 @@ use std::process::Command;
 
 use harness::animator::{self as reference, Lent, Sequence};
 use harness::vectors::{self, keyed};
-use harness::{feet, paths, setup};
+use harness::{build, feet, paths, setup};
 use pantin::{Bank, Clip};
 use pantin_animator::machine::Table;
 use tempfile::TempDir;
@@ -24,6 +24,20 @@ const FEW_UPDATES: u32 = 25;
 /// Random tables of feet and damaged ones for each bank, and updates of each.
 const FEET_TABLES: u32 = 150;
 const FEET_UPDATES: u32 = 200;
+
+/// A smile over a walk.
+const LAYER: &str = r#"
+bank = "clips.ptb"
+
+[[layer]]
+clip = "smiles"
+input = "smile"
+joints = ["MouthSmile*"]
+
+[[state]]
+name = "rests"
+transitions = []
+"#;
 
 fn motion(name: &str) -> PathBuf {
     paths::root().join("motions").join(name)
@@ -123,6 +137,36 @@ fn our_character_is_that_of_the_crate_at_every_rate() {
         assert_eq!(compare(&folder, &format!("{rate} pictures a second"), &[&character], &script), 1);
     }
     compare(&folder, "random inputs", &[&character], &reference::inputs(&table, UPDATES, &mut Sequence(1)));
+}
+
+/// A layer that names scalars of Live Link Face, of which a rig has the numbers alone.
+#[test]
+fn a_layer_finds_scalars_by_names_that_the_rig_does_not_spell() {
+    if setup::host_only("the animator in JavaScript") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let walk = motion("walk.keys").display().to_string();
+    let mut list = String::new();
+    for (name, smile) in [("rests", 0), ("smiles", 1)] {
+        // The last row gives both the range of one rig.
+        let rows: String = (0..30).map(|row| format!("{:.4},0.5,{smile}\n", f64::from(row) / 30.0)).collect();
+        write(&folder, &format!("{name}.csv"), format!("time,JawOpen,MouthSmileLeft\n{rows}1,0.5,1\n"));
+        list += &format!("{walk} --name {name} --with {name}.csv\n");
+    }
+    write(&folder, "clips.list", list);
+    write(&folder, "machine.toml", LAYER);
+    let bank = ["convert", "clips.list", "-o", "clips.ptb", "--segments"];
+    for arguments in [bank, ["machine", "machine.toml", "-o", "character.ptb", "--quiet"]] {
+        let mut tool = Command::new(build::host_tool().unwrap());
+        let output = tool.args(arguments).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let bank = std::fs::read(folder.path().join("character.ptb")).unwrap();
+    let rig = Bank::new_checked(&bank).unwrap().rig();
+    assert!(rig.scalars().any(|scalar| scalar.name() == "MouthSmileLeft"));
+    let script = reference::inputs(&Table::of_bank(&bank).unwrap(), FEW_UPDATES, &mut Sequence(3));
+    assert_eq!(compare(&folder, "a layer of scalars", &[&bank], &script), 1);
 }
 
 /// The files of a bank's clips that have snapshots.

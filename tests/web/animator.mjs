@@ -3,13 +3,14 @@
 //   node animator.mjs steer SCRIPT BANKS   : the state machines of banks, each behind its length as a u32
 import { readFileSync } from "node:fs";
 import { keys } from "../../web/packages/decoder/keys.js";
+import { LIVE_LINK } from "../../web/packages/decoder/names.js";
 import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/decoder/clip.js";
-import { animatorOf } from "../../web/packages/player/animator.js";
+import { animatorOf } from "../../web/packages/animator/animator.js";
 import { bankOf } from "../../web/packages/player/bank.js";
-import { opened } from "../../web/packages/player/character.js";
-import { feetOf } from "../../web/packages/player/feet.js";
+import { opened } from "../../web/packages/animator/open.js";
+import { feetOf } from "../../web/packages/animator/feet.js";
 import { figureOf, maths } from "../../web/packages/player/figure.js";
-import { partOf } from "../../web/packages/player/track.js";
+import { partOf, setSpeed } from "../../web/packages/animator/track.js";
 
 const [, , what, script, ...files] = process.argv;
 const lines = readFileSync(script, "utf8").split("\n").filter(Boolean).map((line) => [line[0], ...line.slice(1).split(" ").filter(Boolean).map(Number)]);
@@ -42,7 +43,7 @@ function play() {
     let start = "";
     if (word === "w") start = refuses(() => animator.change(clips[n[0]], n[1], n[2], n[3], n[4])) ? "refused " : "";
     else if (word === "k") animator.seek(n[0]);
-    else if (word === "v") animator.setSpeed(n[0]);
+    else if (word === "v") setSpeed(animator.track, n[0]);
     else if (word === "s") animator.stand([[BigInt(n[0]), BigInt(n[1])], n[2]]);
     else animator.hold(animator.play(n[0] * 1000));
     print(start, animator);
@@ -56,7 +57,8 @@ function steer(file) {
   const open = () => {
     // The element tells a bank by its first bytes.
     if (file[0] !== 80 || file[1] !== 98) throw new Error("pantin: not a bank");
-    const bank = bankOf(file, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]);
+    // The element names scalars only where it steers a bank.
+    const bank = bankOf(file, [fieldsOf, checked, (bytes) => openRawRig(bytes, LIVE_LINK), openRawClip, figureOf, maths]);
     // The element plays the clips of such a bank.
     if (!bank.machine) throw new Error("pantin: no state machine");
     character = opened(bank, keys, feetOf);

@@ -6,7 +6,7 @@ import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/d
 import { openClip } from "../../web/packages/decoder/index.js";
 import { bankOf } from "../../web/packages/player/bank.js";
 import { steer } from "../../web/packages/player/character.js";
-import { feetOf } from "../../web/packages/player/feet.js";
+import { feetOf } from "../../web/packages/animator/feet.js";
 import { figureOf, maths, visitor } from "../../web/packages/player/figure.js";
 
 const SIZES = [[128, 64], [320, 160], [640, 320], [390, 700]];

@@ -1,12 +1,13 @@
-// The packages as a program in Node uses them: `node check.mjs CLIP`. Prints what was measured.
+// The packages as a program in Node uses them: `node check.mjs CLIP CHARACTER`. Prints what was measured.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
+import { openCharacter } from "@pantin/animator";
 import { openClip } from "@pantin/decoder";
 import * as min from "@pantin/decoder/min";
 import { findJoint } from "@pantin/decoder/turns";
 import * as minTurns from "@pantin/decoder/turns/min";
 import { PantinPlayer } from "@pantin/player";
-import { PantinPose, toAnimationClip } from "@pantin/three";
+import { PantinCharacter, PantinPose, toAnimationClip } from "@pantin/three";
 import { AnimationMixer, Bone, Euler, Float32BufferAttribute, BufferGeometry, Group, Mesh, Quaternion, Skeleton, Vector3 } from "three";
 
 const bytes = readFileSync(process.argv[2]);
@@ -22,11 +23,11 @@ for (const player = clip.play(); player.step() && short.step(); ) {
 assert.equal(typeof PantinPlayer, "function");
 
 // A figure of bones: below an armature that turns, scales and is elsewhere, the joints are where they are without it.
-function figure(inside = new Group()) {
+function figure(inside = new Group(), joints = clip.joints) {
   const root = new Group().add(inside);
-  const bones = clip.joints.map(({ name, offset }) => Object.assign(new Bone(), { name: name && `mixamorig${name}` }).translateX(offset[0]).translateY(offset[1]).translateZ(offset[2]));
+  const bones = joints.map(({ name, offset }) => Object.assign(new Bone(), { name: name && `mixamorig${name}` }).translateX(offset[0]).translateY(offset[1]).translateZ(offset[2]));
   const { scale } = inside;
-  clip.joints.forEach(({ parent }, index) => {
+  joints.forEach(({ parent }, index) => {
     bones[index].position.divide(scale);
     (parent < 0 ? inside : bones[parent]).add(bones[index]);
   });
@@ -89,6 +90,35 @@ for (let frame = 0; frame < clip.frames; frame += 11) {
 }
 assert.ok(limbs > 50 && greatest < 1e-5, `${limbs} limbs, ${greatest} radians`);
 assert.ok(new PantinPose(clip, new Skeleton(plain.bones), { map }).joints.length > 10);
+
+// A character walks, turns and waves on bones as in its own numbers: in the world, and in its place; on bones of half the length it goes half as far.
+const walker = openCharacter(readFileSync(process.argv[3]));
+const [inside, small] = [figure(armature.clone(false), walker.joints), figure(new Group(), walker.joints)];
+small.bones.forEach(({ position }) => position.multiplyScalar(0.5));
+const shown = [new PantinCharacter(walker, inside.root, { map }), new PantinCharacter(walker, small.root, { map, retarget: true })];
+assert.deepEqual(shown.map(({ missing }) => missing.joints), [[], []]);
+const apart = (figure, factor, world) => Math.max(...places(figure).map((place, joint) => (walker.joints[joint].isEnd ? 0 : place.distanceTo(new Vector3().fromArray(world, 3 * joint).multiplyScalar(factor)))));
+const soles = ["left-foot", "left-toes", "right-foot", "right-toes"].map(walker.joint);
+let before;
+for (let picture = 0; picture < 480; picture++) {
+  walker.hold("go", picture < 200);
+  if (picture === 320) walker.fire("left");
+  shown[0].update(1 / 60);
+  shown[1].apply();
+  const world = walker.world();
+  assert.ok(apart(inside, 1, world) < 1e-4 * size, `picture ${picture}: ${apart(inside, 1, world)}`);
+  assert.ok(apart(small, 0.5, world) < 1e-4 * size, `picture ${picture}: ${apart(small, 0.5, world)}`);
+  // Who walks or turns, 2 cm a picture, stands on something.
+  const now = soles.map((joint) => new Vector3(world[3 * joint], 0, world[3 * joint + 2]));
+  if (/walk|turn/.test(walker.state) && before) assert.ok(now.some((place, index) => place.distanceTo(before[index]) < 0.3), `picture ${picture}`);
+  before = now;
+}
+const { position, heading } = walker.placement;
+assert.ok(position[2] > 300 && Math.abs(Math.abs(heading) - Math.PI / 2) < 0.1, `${position} ${heading}`);
+walker.inPlace = true;
+shown.forEach((figure) => figure.apply());
+assert.ok(apart(inside, 1, walker.world()) < 1e-4 * size && Math.hypot(...walker.translation(0)) < 200);
+assert.throws(() => walker.fire("fly"), /go, jump/);
 
 // Scalars move morph targets; frames of 100 characters are decoded and posed.
 if (clip.scalars.length) {

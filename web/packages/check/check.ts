@@ -1,10 +1,11 @@
 // What the packages' types allow, and what they do not.
+import { openCharacter, type Character } from "@pantin/animator";
 import { openBank, openClip, type Clip, type Player } from "@pantin/decoder";
 import { openClip as openShort } from "@pantin/decoder/min";
 import { degrees, findJoint, type EulerOrder } from "@pantin/decoder/turns";
 import { findJoint as findShort } from "@pantin/decoder/turns/min";
 import { PantinPlayer, type Heard } from "@pantin/player";
-import { PantinPose, toAnimationClip } from "@pantin/three";
+import { PantinCharacter, PantinPose, toAnimationClip } from "@pantin/three";
 import { AnimationMixer, Object3D, Skeleton } from "three";
 
 export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
@@ -21,6 +22,13 @@ export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
   knee.euler("XYX");
   new AnimationMixer(root).clipAction(toAnimationClip(clip, root, { name: "walk", map: { Hips: "hips", Toe: null } })).play();
   const pose = new PantinPose(clip, new Skeleton([]), { morphs: (name) => name.toLowerCase(), scale: 0.01, retarget: true, inPlace: true }).update(0.1);
+  const character: Character = openCharacter(bytes);
+  character.hold("go", true);
+  new PantinCharacter(character, root, { retarget: true }).update(0.1).apply();
+  const [east]: readonly number[] = character.placement.position;
+  character.inPlace = character.events.some(({ name }) => name === "left_foot_down") && east !== 0;
+  // @ts-expect-error It is set by `set`.
+  character.parameters[0].value = 3;
   const element: PantinPlayer = document.createElement("pantin-player");
   element.src = "walk.ptn";
   element.addEventListener("heard", ({ detail }) => console.log((detail satisfies Heard).name));

@@ -210,6 +210,8 @@ export const openRawBank = (data, extras) => {
   const { u8, more, take } = fieldsOf(bytesOf(data));
   const sections = [];
   const clips = new Map();
+  // All of them by their index: of one name there may be several.
+  const files = [];
   check(u8() === 80 && u8() === 98, "not a bank");
   const version = u8();
   check(version !== 2 || extras.keys, "a bank with key clips needs the keys of @pantin/decoder/keys");
@@ -227,12 +229,13 @@ export const openRawBank = (data, extras) => {
     const name = entries.name();
     const body = bodies.take(entries.varint());
     check(name, "bad bank");
+    files.push(body);
     if (!clips.has(name)) clips.set(name, body);
   }
   check(clips.size && !bodies.more(), "bad bank");
   const names = [...clips.keys()];
   return {
-    rig, names,
+    rig, names, sections, files,
     open: (name = names[0]) => {
       const body = clips.get(name);
       check(body, "no clip " + name);

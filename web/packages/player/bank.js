@@ -8,7 +8,8 @@ const FEET = 5;
 // The clips of a bank. `tools` are what the element's own script has: fields of bytes, bytes with a checksum, what opens rigs and clips, and figures.
 export function bankOf(file, tools) {
   const [fieldsOf, checked, openRawRig] = tools;
-  const found = [];
+  const names = [];
+  const clips = [];
   const sections = {};
   const must = (holds, problem = "out of bounds") => {
     if (!holds) throw new Error(`pantin: ${problem}`);
@@ -29,28 +30,29 @@ export function bankOf(file, tools) {
     while (entries.more()) {
       const name = entries.take();
       must(name.length);
-      found.push({ name: new TextDecoder().decode(name), file: bodies.take(entries.varint()) });
+      names.push(new TextDecoder().decode(name));
+      clips.push(bodies.take(entries.varint()));
     }
-    must(found.length && !bodies.more());
+    must(names.length && !bodies.more());
     rig = openRawRig(sections[RIG]);
   } catch (error) {
     throw new Error(`problem with the bank: ${error.message.slice(8)}`);
   }
-  const names = found.map(({ name }) => name);
   return {
-    names, rig, tools,
-    clips: found.map(({ file }) => file),
+    names, clips, rig, tools,
     machine: sections[MACHINE],
     feet: sections[FEET],
     // The clip that was asked for, or the first, and the rig.
     clip(name) {
-      const clip = name === null ? found[0] : found.find((clip) => clip.name === name);
+      const clip = clips[name === null ? 0 : names.indexOf(name)];
       if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names.join(", ")}`);
-      return [clip.file, rig];
+      return [clip, rig];
     },
     // Lets a player steer the bank's state machine.
     async steer(player) {
-      const [{ steer }, { feetOf }, { keys }] = await Promise.all([import("./pantin-character.js"), sections[FEET] ? import("./pantin-feet.js") : {}, file[2] > 1 ? import("./pantin-keys.js") : {}]);
+      const [{ steer }, { feetOf }, { keys }, { LIVE_LINK }] = await Promise.all([import("./pantin-character.js"), sections[FEET] ? import("./pantin-feet.js") : {}, file[2] > 1 ? import("./pantin-keys.js") : {}, rig.scalars[0] ? import("./pantin-face.js") : {}]);
+      // Layers name scalars, also such as the rig names by their numbers in the list.
+      rig.scalars = openRawRig(sections[RIG], LIVE_LINK).scalars;
       return steer(this, player, keys, feetOf);
     },
   };

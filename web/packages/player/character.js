@@ -1,9 +1,8 @@
 // What <pantin-player> loads for a bank with a state machine: what steers it, and its figure where that stands.
-import { Q, normalize, round } from "../decoder/turning.js";
-import { clamp, headingOf, nearest, partsOf, rotated, weighted, wide, wideShifted, writtenTo } from "./channels.js";
-import { isAlike } from "./animator.js";
-import { characterOf } from "./machine.js";
-import { must, tableOf } from "./machine-table.js";
+import { round } from "../decoder/turning.js";
+import { isAlike } from "../animator/animator.js";
+import { clamp, wideShifted } from "../animator/channels.js";
+import { opened } from "../animator/open.js";
 
 const FAULT = "the bank contradicts itself";
 // 71 minutes.
@@ -13,18 +12,6 @@ const FAR = 2n ** 30n;
 // Where the figure's inner parts have its rotations, and the exponent of its unit less that of its clip.
 const TURNS = 5;
 const SHIFT = 15;
-
-// The character of a bank, whose key clips need the `keys` of keys.js, and whose feet, if it has a table of them, `feetOf` of feet.js. Throws an Error if its state machine, its
-// table of feet, or a clip of it, is no good.
-export function opened({ clips, feet, machine, rig, tools: [fieldsOf, checked, , openRawClip, figureOf, maths] }, keys, feetOf) {
-  const poseOf = (_, __, state, channels) => ({ state, channels });
-  const open = (index) => {
-    const clip = openRawClip(clips[index], rig, false, { poseOf, keys });
-    if (clip.rig !== rig) throw new Error("pantin: out of bounds");
-    return clip;
-  };
-  return characterOf(rig, tableOf(fieldsOf, checked(machine), clips.length), open, feet && ((animator) => feetOf(fieldsOf(checked(feet)), clips.length, animator, figureOf, maths, [Q, clamp, headingOf, must, nearest, normalize, partsOf, rotated, weighted, wide, wideShifted, writtenTo])));
-}
 
 // Where a figure stands, for `place` of figure.js. Of the figure's rotations, the last is the view's.
 function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {

@@ -3,6 +3,8 @@ import { LIVE_LINK } from "@pantin/decoder/names.js";
 import { faceLinesOf } from "./face-lines.js";
 import { FACE_MODEL } from "./face-model.js";
 
+export { LIVE_LINK };
+
 // Of a clip: what draws its scalars; those that are not a face's are bars, in a rig without joints. `maths` is that of figure.js.
 export async function faceOf({ rig, joints, scalars }, maths) {
   const first = rig.channels - scalars.length;

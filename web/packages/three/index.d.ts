@@ -1,3 +1,4 @@
+import type { Character } from "@pantin/animator";
 import type { Clip, Joint, Player } from "@pantin/decoder";
 import type { AnimationClip, Object3D, Skeleton, Vector3 } from "three";
 
@@ -21,23 +22,45 @@ export interface Options {
   inPlace?: boolean;
 }
 
-/** A character that shows the frames of a clip. */
-export declare class PantinPose {
+/** What a pose moves. */
+interface Binding {
+  /** Names of joints and scalars that have no node or morph target. */
+  readonly missing: { readonly joints: readonly string[]; readonly scalars: readonly string[] };
+  /** With `retarget`: the factor from lengths of the motion to those of the scene, and where the motion has the root, in the unit of the scene. */
+  readonly retargeting?: { readonly scale: number; readonly travel: Vector3 };
+}
+
+/** A figure that shows the frames of a clip. */
+export declare class PantinPose implements Binding {
   /** Throws an Error if no joint and no scalar of the clip is found below `root`. */
   constructor(clip: Clip, root: Object3D | Skeleton, options?: Options);
   readonly clip: Clip;
   readonly player: Player;
   /** Seconds. */
   readonly time: number;
-  /** Names of the clip that have no node or morph target. */
-  readonly missing: { readonly joints: readonly string[]; readonly scalars: readonly string[] };
-  /** With `retarget`: the factor from lengths of the clip to those of the scene, and where the clip has the root, in the unit of the scene. */
-  readonly retargeting?: { readonly scale: number; readonly travel: Vector3 };
+  readonly missing: Binding["missing"];
+  readonly retargeting?: Binding["retargeting"];
   /** Goes on by a number of seconds. A looped clip repeats; another one stays at its last frame. */
   update(seconds: number): this;
   /** Shows the frame at a time in seconds. */
   setTime(seconds: number): this;
   /** Puts the frame of `player` on the nodes, after it was moved by its own methods. */
+  apply(): void;
+}
+
+/**
+ * A figure that shows a character of @pantin/animator: a bank's state machine, with its transitions, layers and held feet. It travels through the scene by its first joint;
+ * set `character.inPlace` to move the figure by `character.placement` instead.
+ */
+export declare class PantinCharacter implements Binding {
+  /** Throws an Error if no joint and no scalar of the character is found below `root`. */
+  constructor(character: Character, root: Object3D | Skeleton, options?: Options);
+  readonly character: Character;
+  readonly missing: Binding["missing"];
+  readonly retargeting?: Binding["retargeting"];
+  /** Lets the character's time pass by a number of seconds, and shows its pose. */
+  update(seconds: number): this;
+  /** Puts the character's pose on the nodes, after it was moved by its own methods. */
   apply(): void;
 }
 

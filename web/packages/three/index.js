@@ -78,27 +78,49 @@ function bindScalars(clip, root, { morphs = {} } = {}) {
   return { bound, missing };
 }
 
-/** A character that shows the frames of a clip. */
-export class PantinPose {
+// What puts the pose of a player on nodes and morph targets: of a clip's, or a character.
+class Binding {
   #rotation = [0, 0, 0, 1];
   #translation = [0, 0, 0];
   #turn = new Quaternion();
   #place = new Vector3();
 
-  constructor(clip, root, options = {}) {
-    this.clip = clip;
-    this.player = clip.play();
-    const [joints, scalars] = [bindJoints(clip, root, options), bindScalars(clip, root, options)];
+  constructor(figure, player, root, options) {
+    this.player = player;
+    const [joints, scalars] = [bindJoints(figure, root, options), bindScalars(figure, root, options)];
     this.joints = joints.bound;
     this.scalars = scalars.bound;
     this.missing = { joints: joints.missing, scalars: scalars.missing };
     if (options.retarget && this.joints.length) {
-      this.retargeting = new Retargeting(clip, this.joints, root.bones ? null : root, options);
-      // Of the bones, the first alone moves.
-      this.retargeting.entries.forEach(({ parent }, index) => (this.joints[index].moves = !parent));
+      this.retargeting = new Retargeting(figure, this.joints, root.bones ? null : root, options);
+      this.retargeting.entries.forEach((entry, index) => (this.joints[index].moves = this.retargeting.movers.includes(entry)));
     }
+    if (!this.joints.length && !this.scalars.length) throw new Error("no joint and no scalar has a node or a morph target of its name: give a map");
+  }
+
+  apply() {
+    const { player } = this;
+    const [rotation, translation] = [this.#rotation, this.#translation];
+    this.retargeting?.apply(player);
+    for (const { joint, node, moves, inverse, unturn, scale } of this.retargeting ? [] : this.joints) {
+      player.rotation(joint, rotation);
+      if (unturn) node.quaternion.copy(unturn).multiply(this.#turn.fromArray(rotation));
+      else node.quaternion.set(rotation[0], rotation[1], rotation[2], rotation[3]);
+      if (!moves) continue;
+      player.translation(joint, translation);
+      if (inverse) node.position.copy(this.#place.fromArray(translation).multiplyScalar(scale).applyMatrix4(inverse));
+      else node.position.set(translation[0] * scale, translation[1] * scale, translation[2] * scale);
+    }
+    for (const { scalar, node, index } of this.scalars) node.morphTargetInfluences[index] = player.scalar(scalar);
+  }
+}
+
+/** A figure that shows the frames of a clip. */
+export class PantinPose extends Binding {
+  constructor(clip, root, options = {}) {
+    super(clip, clip.play(), root, options);
+    this.clip = clip;
     this.time = 0;
-    if (!this.joints.length && !this.scalars.length) throw new Error("no joint and no scalar of the clip has a node or a morph target of its name: give a map");
     this.apply();
   }
 
@@ -116,22 +138,23 @@ export class PantinPose {
     if (player.frame !== before) this.apply();
     return this;
   }
+}
 
-  /** Puts the player's frame on the nodes. */
-  apply() {
-    const { player } = this;
-    const [rotation, translation] = [this.#rotation, this.#translation];
-    this.retargeting?.apply(player);
-    for (const { joint, node, moves, inverse, unturn, scale } of this.retargeting ? [] : this.joints) {
-      player.rotation(joint, rotation);
-      if (unturn) node.quaternion.copy(unturn).multiply(this.#turn.fromArray(rotation));
-      else node.quaternion.set(rotation[0], rotation[1], rotation[2], rotation[3]);
-      if (!moves) continue;
-      player.translation(joint, translation);
-      if (inverse) node.position.copy(this.#place.fromArray(translation).multiplyScalar(scale).applyMatrix4(inverse));
-      else node.position.set(translation[0] * scale, translation[1] * scale, translation[2] * scale);
-    }
-    for (const { scalar, node, index } of this.scalars) node.morphTargetInfluences[index] = player.scalar(scalar);
+/** A figure that shows a character of @pantin/animator. */
+export class PantinCharacter extends Binding {
+  constructor(character, root, options = {}) {
+    super(character, character, root, options);
+    this.character = character;
+    // The figure travels by its first joint, whatever channels that has.
+    for (const bound of this.joints) bound.moves ||= character.joints[bound.joint].parent < 0;
+    this.apply();
+  }
+
+  /** Lets the character's time pass. */
+  update(seconds) {
+    this.character.update(seconds);
+    this.apply();
+    return this;
   }
 }
 

@@ -35,6 +35,7 @@ export class Retargeting {
     this.#places = new Float64Array(3 * count);
     this.#turns = new Float64Array(4 * count);
     this.inPlace = inPlace;
+    this.top = top;
     // Where the clip has the root, in the scene's unit.
     this.travel = new Vector3();
     // From the clip's axes to those of three.js, where y is up.
@@ -62,6 +63,8 @@ export class Retargeting {
       its += rest[entry.joint].distanceTo(rest[entry.parent.joint]);
     }
     this.scale = its > 0 && own > 0 ? own / its : 1;
+    // The root moves, and what else moves in the clip and hangs in the same place: some figures travel by one joint and sway by the next. The others keep their bones' lengths.
+    this.movers = entries.filter(({ joint, parent }) => !parent || (joints[joint].kinds.some((kind) => kind < 3) && rest[joint].distanceTo(rest[entries[0].joint]) <= its * 1e-6));
     for (const entry of entries) {
       const [child] = entry.children;
       const isLimb = entry.children.length === 1 && entry.parent;
@@ -81,16 +84,18 @@ export class Retargeting {
   apply(player) {
     const [places, turns, now, place] = [this.#places, this.#turns, this.#now, this.#place];
     player.world(places, turns);
-    for (const { joint, node, parent, world, fixed, between, outside, at } of this.entries) {
+    for (const { joint, node, parent, world, fixed, between } of this.entries) {
       now.fromArray(turns, 4 * joint);
       world.copy(this.upright).multiply(now).multiply(this.upside).multiply(fixed);
       now.copy(parent ? parent.world : NONE).multiply(between).invert();
       node.quaternion.copy(now).multiply(world);
-      if (parent) continue;
+    }
+    const [{ at: home }] = this.movers;
+    for (const { joint, node, parent, outside } of this.movers) {
       place.fromArray(places, 3 * joint).applyQuaternion(this.upright).multiplyScalar(this.scale);
-      this.travel.copy(place);
-      if (this.inPlace) place.set(at.x, place.y, at.z);
-      node.position.copy(place.applyMatrix4(outside));
+      if (!parent) this.travel.copy(place);
+      if (this.inPlace) place.set(place.x - this.travel.x + home.x, place.y, place.z - this.travel.z + home.z);
+      node.position.copy(place.applyMatrix4(parent ? placed(node.parent, this.top).invert() : outside));
     }
   }
 }

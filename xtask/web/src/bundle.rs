@@ -29,16 +29,17 @@ pub const SCRIPTS: [(&str, &[&str]); 15] = [
         "pantin-character.js",
         &[
             "decoder/turning.js",
-            "player/channels.js",
-            "player/track.js",
-            "player/animator.js",
-            "player/gait.js",
-            "player/machine-table.js",
-            "player/machine.js",
+            "animator/channels.js",
+            "animator/track.js",
+            "animator/animator.js",
+            "animator/gait.js",
+            "animator/machine-table.js",
+            "animator/machine.js",
+            "animator/open.js",
             "player/character.js",
         ],
     ),
-    ("pantin-feet.js", &["player/feet.js"]),
+    ("pantin-feet.js", &["animator/feet.js"]),
 ];
 /// The modules of the decoder's minified build.
 pub const DECODER: [&str; 5] =
@@ -88,7 +89,11 @@ pub fn bundle(packages: &Path, modules: &[&str]) -> Result<String> {
             }
         }
         // The decoder's texts and patterns are more than the short form understands.
-        whole += &if module.starts_with("player/") { String::from_utf8(script::shortened(out.as_bytes())?)? + "\n" } else { out };
+        whole += &if ["player/", "animator/"].iter().any(|folder| module.starts_with(folder)) {
+            String::from_utf8(script::shortened(out.as_bytes())?)? + "\n"
+        } else {
+            out
+        };
     }
     Ok(whole)
 }

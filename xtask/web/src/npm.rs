@@ -14,7 +14,7 @@ use crate::{bundle, tools};
 use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
-pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
+pub const PACKAGES: [&str; 4] = ["decoder", "animator", "three", "player"];
 const CHECK: [&str; 13] = [
     "bundles.mjs",
     "check.mjs",
@@ -67,6 +67,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
                 name if [&PLAYER[..], &OTHERS, &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?
                 }
+                name if name.ends_with(".js") => module(&source, name)?,
                 name => read(&source.join(name))?,
             };
             crate::site::write(&folder.join(name), &bytes)?;
@@ -107,7 +108,8 @@ pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
     let mut arguments = vec!["install", "--no-save", "--no-audit", "--no-fund"];
     arguments.extend(files.iter().map(String::as_str));
     npm::run(folder, &arguments)?;
-    let measured = node(folder, "check.mjs", &[paths::root().join("motions/walk.ptn")])?;
+    let measured =
+        node(folder, "check.mjs", &["walk.ptn", "character.ptb"].map(|name| paths::root().join("motions").join(name)))?;
     node(folder, "node_modules/typescript/bin/tsc", &["--project".into(), ".".into()])?;
     let places = node(folder, "bundles.mjs", &[paths::root().join(site).join("clips")])?;
     Ok(Checked {
@@ -168,6 +170,14 @@ fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     ensure!(output.status.success(), "{program}: {out}{err}");
     Ok(out)
+}
+
+/// A package's module: its own, or the player's. Modules of other packages are imported by the packages' names.
+fn module(source: &Path, name: &str) -> Result<Vec<u8>> {
+    let own = source.join(name);
+    let text = read(&if own.is_file() { own } else { source.join("../player").join(name) })?;
+    let text = String::from_utf8(text).with_context(|| format!("{name} is no text"))?;
+    Ok(text.replace("\"../decoder/", "\"@pantin/decoder/").replace("\"../player/", "\"./").into_bytes())
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {

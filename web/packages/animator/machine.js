@@ -71,7 +71,7 @@ export const characterOf = (rig, table, open, lendFeet) => {
   const initial = clipOf(row().clip);
   const animator = animatorOf(initial, carrierOf(rig, [...players()]));
   const { pose, track } = animator;
-  animator.setSpeed(row().speed);
+  setSpeed(track, row().speed);
   const frame = begun(0, initial, row().speed);
   if (frame) {
     animator.seek(frame);
@@ -114,7 +114,7 @@ export const characterOf = (rig, table, open, lendFeet) => {
       const fast = clamp(time * big(row().speed), -LONGEST, LONGEST - 1n);
       return mixed ? Number(clamp(fast / mixed, -4n * big(NORMAL), 4n * big(NORMAL))) : 0;
     };
-    animator.setSpeed(speedOf(time));
+    setSpeed(track, speedOf(time));
     setSpeed(second, speedOf(its));
     const at = inStep(track, second.clip, second.player.frame);
     if (at < 0) throw new Error("pantin: no footsteps");

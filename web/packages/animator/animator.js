@@ -1,7 +1,7 @@
 // A figure that plays one clip after another, with transitions, root motion and events. The firmware's animator.rs, transition.rs, carry.rs and switch.rs state each step.
 import { abs, computeOf, floor, imul, max, min } from "../decoder/turning.js";
 import { FREE, MOST, WHOLE, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
-import { NORMAL, STATE, V, addPart, advance, beginLap, eachMoving, isLast, partOf, passLaps, placed, seek, setSpeed, start, travelOf } from "./track.js";
+import { NORMAL, STATE, V, addPart, advance, beginLap, eachMoving, isLast, partOf, passLaps, placed, seek, start, travelOf } from "./track.js";
 
 // Kinds of transitions: the third lets the difference of poses alone die out.
 const CUT = 0;
@@ -111,15 +111,15 @@ export const animatorOf = (first, carrier) => {
   };
   // Lets velocities die out in fewer frames than differences: the sum of two cubics is one.
   const solveApart = (few) => {
-    const [differences, velocities] = [d, v].map((own) => own.slice());
-    v.fill(0);
-    solve();
-    const [accelerations, slopes] = [w, k].map((own) => own.slice());
-    d.fill(0);
-    v.set(velocities);
-    solve(0, channels, few);
-    d.set(differences);
-    v.set(velocities);
+    const without = (other, frames) => {
+      const kept = other.slice();
+      other.fill(0);
+      solve(0, channels, frames);
+      other.set(kept);
+      return [w, k].map((own) => own.slice());
+    };
+    const [accelerations, slopes] = without(v);
+    without(d, few);
     for (let c = 0; c < channels; c++) {
       w[c] += accelerations[c];
       k[c] += slopes[c];
@@ -356,7 +356,6 @@ export const animatorOf = (first, carrier) => {
   travel = travelOf(placement, place);
   return {
     track, pose, play, hold, stand, change, mix, leavePlace, leaveCarried, placedAt,
-    setSpeed: (speed) => setSpeed(track, speed),
     seek: (frame) => {
       leaveCarried();
       seek(track, frame);

@@ -21,19 +21,16 @@ export const inStep = (track, clip, near) => {
   const its = stepsOf(clip);
   if (!own.length || !its.length) return -1;
   // The foot that came down last, and how far the gait is on the way to the next footstep; over the seam of the loop.
-  const last = own.findLast(([at]) => at <= frame);
   const [end, endRight] = own.at(-1);
-  const from = last ? last[0] : end - frames;
-  const isRight = last ? last[1] : endRight;
-  const next = own.find(([at]) => at > frame);
-  const to = next ? next[0] : own[0][0] + frames;
+  const [from, isRight] = own.findLast(([at]) => at <= frame) ?? [end - frames, endRight];
+  const [to] = own.find(([at]) => at > frame) ?? [own[0][0] + frames];
   const part = to === from ? 0 : clamp(Math.trunc(((frame - from) * 65536 + partOf(track)) / (to - from)), 0, 0xffff);
   const whole = clip.frames * 65536;
   let best = -1;
   let least = Infinity;
   its.forEach(([before, wasRight], index) => {
     if (wasRight !== isRight) return;
-    const behind = its[index + 1] ? its[index + 1][0] : its[0][0] + clip.frames;
+    const [behind] = its[index + 1] ?? [its[0][0] + clip.frames];
     const at = (((before * 65536 + (behind - before) * part) % whole) + whole) % whole;
     const apart = abs(at - near * 65536);
     const away = min(apart, whole - apart);
