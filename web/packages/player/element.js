@@ -21,7 +21,7 @@ const isStill = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 const CSS = `
 :host { display: flex; flex-direction: column; font: 14px/1.4 system-ui, sans-serif; transition: color 1ms; }
 :host([hidden]) { display: none; }
-.frame { position: relative; flex: 1 1 auto; min-height: 0; aspect-ratio: 2; }
+.frame { position: relative; flex: auto; min-height: 0; width: 100%; aspect-ratio: 2; }
 .stage { --p: #fafaf7; --m: #262c34; --l: #c65c08; --r: #0068a8; --g: #69767e; }
 .dark { --p: #13161b; --m: #fff0d7; --l: #ffa64d; --r: #60c4ff; --g: #aabec3; }
 .stage { position: absolute; inset: 0; border-radius: 10px; overflow: hidden; touch-action: pan-y; cursor: grab; outline-offset: 3px; background: var(--pantin-paper, var(--p)); color: var(--pantin-body, var(--m)); fill: var(--pantin-left, var(--l)); stroke: var(--pantin-right, var(--r)); stop-color: var(--pantin-ground, var(--g)); }
