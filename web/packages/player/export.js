@@ -84,7 +84,8 @@ export async function record(player, paper, options = {}) {
 // Recorders take the time that the pictures take.
 async function video({ canvas }, show, count, fps, type, done) {
   const stream = canvas.captureStream(0);
-  const [track] = stream.getVideoTracks();
+  // Firefox asks the stream for pictures, other browsers its track.
+  const source = stream.requestFrame ? stream : stream.getVideoTracks()[0];
   const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 5e6 });
   const parts = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
@@ -95,7 +96,7 @@ async function video({ canvas }, show, count, fps, type, done) {
     const begun = performance.now();
     for (let number = 0; number < count; number++) {
       if (number) show(number);
-      track.requestFrame();
+      source.requestFrame();
       await done(number);
       await new Promise((go) => setTimeout(go, begun + ((number + 1) * 1000) / fps - performance.now()));
     }
