@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use harness::display::{GREYS, Picture};
 use harness::download::BOARDS;
 use harness::web::browser::{Browser, skipped};
-use harness::web::{self, slow};
+use harness::web::{self, browsers, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
 use pantin_convert::expand::expand;
@@ -591,6 +591,18 @@ fn what_cannot_be_converted_is_refused_in_words() {
     if let Some(data) = paths::data() {
         drive("cancel", json!({ "file": data.join("bvh_cmu01_hops-and-turn.bvh") }));
     }
+}
+
+/// A character that is steered, a face, all looks, files that are saved, a conversion. In WebKit, a picture once was wider than its element; in Firefox, no video was saved.
+#[test]
+fn the_page_does_the_same_in_every_browser_that_is_installed() {
+    if skipped("the page in other browsers") {
+        return;
+    }
+    LazyLock::force(&STAGE);
+    let tried = browsers::check(Path::new("target/web")).unwrap_or_else(|error| panic!("{error:#}"));
+    println!("tried in {}", tried.browsers.join(", "));
+    tried.notes.iter().for_each(|note| println!("{note}"));
 }
 
 #[test]

@@ -102,6 +102,9 @@ pub fn cargo_program(words: &[&str], what: &str, install: &str) -> Result<()> {
     Ok(())
 }
 
+/// WebKit's own browser, which comes with the library and not in `PATH`.
+pub const WEBKIT: &str = "MiniBrowser";
+
 /// An emulator, Node.js or Chromium, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
@@ -205,6 +208,9 @@ fn apt_get(arguments: &[&str]) -> Result<()> {
 fn debian(name: &str) -> &str {
     match name {
         "node" => "nodejs",
+        "firefox" => "firefox-esr",
+        // With the screen in memory that it needs.
+        WEBKIT => "libwebkit2gtk-4.1-0 xvfb",
         // Its sanitizers are a package apart.
         "clang" => "clang libclang-rt-dev",
         "qemu-system-riscv32" => "qemu-system-misc",
@@ -229,10 +235,13 @@ pub fn advice(name: &str) -> String {
         ("apk", format!("sudo apk add {package}")),
         ("brew", format!("brew install {}", if emulator { "qemu" } else { name })),
     ];
-    let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
+    let other =
+        || others.into_iter().find(|(tool, _)| name != WEBKIT && paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
         None if emulator => "install QEMU (https://www.qemu.org/download)".into(),
+        None if name == "firefox" => "install Firefox (https://www.mozilla.org/firefox)".into(),
+        None if name == WEBKIT => "install WebKitGTK and Xvfb (https://webkitgtk.org)".into(),
         None if name == "chromium" => "install Chromium (https://www.chromium.org)".into(),
         None => "install Node.js (https://nodejs.org)".into(),
     }

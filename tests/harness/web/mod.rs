@@ -10,7 +10,7 @@ use pantin_tools::serve::{Site, Times, serve};
 
 pub use xtask::browser;
 pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, face_module, player_module, sizes};
-pub use xtask_web::{arduino, bundle, tools};
+pub use xtask_web::{arduino, browsers, bundle, tools};
 
 use crate::paths;
 

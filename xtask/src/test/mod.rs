@@ -45,7 +45,7 @@ Options, of which several can be given:
   --all        Everything, in one run
   --boards     Every board's images in emulators, their sizes, the decoder on every core
   --bindings   The decoders in C, Arduino, MicroPython and JavaScript, and the Python package: needs compilers for other targets
-  --web        The page and the player in Chromium
+  --web        The page and the player in Chromium, the page also in Firefox and WebKit if they are installed
   --packages   Documentation and its tests, packed crates, public items, the oldest Rust
   --captures   The encoder's bounds on captured clips, which are in the folder that $PANTIN_DATA names
   --host-only  Leaves out what needs an emulator or a browser";

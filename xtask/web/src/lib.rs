@@ -1,6 +1,7 @@
 //! The web page: its modules, its files and our clips, and the npm packages.
 
 pub mod arduino;
+pub mod browsers;
 pub mod bundle;
 mod compare;
 mod downloads;

@@ -10,6 +10,7 @@ use pantin_tools::serve::Site;
 use xtask::build::{self, Build};
 use xtask::paths;
 use xtask::steps::say;
+use xtask_web::browsers::{self, Tried};
 use xtask_web::npm;
 use xtask_web::site::{self, Size};
 
@@ -26,7 +27,7 @@ struct Web {
     /// Also packs the site into target/site.pack, and builds target/site/release/pantin with it inside: `pantin serve` then needs no folder
     #[arg(long)]
     program: bool,
-    /// Also packs the npm packages into target/npm, and uses them in a project of their own
+    /// Also packs the npm packages into target/npm, and uses them in a project of their own, and the page in Chromium, and in Firefox and WebKit if they are installed
     #[arg(long)]
     npm: bool,
 }
@@ -76,7 +77,7 @@ fn program(site: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Packs the packages and uses them.
+/// Packs the packages and uses them, and the page, which has the same player.
 fn packages(site: &Path) -> Result<()> {
     let folder = paths::root().join("target/npm");
     let packed = npm::pack(site, &folder)?;
@@ -93,8 +94,8 @@ fn packages(site: &Path) -> Result<()> {
     if drawn.is_empty() {
         say("not compared with glTF's own animations: PANTIN_DATA names no captured clips");
     }
-    if !places.iter().any(|place| place.contains("Firefox")) {
-        say("not tried in Firefox, which is not installed");
-    }
+    let Tried { browsers, notes } = browsers::check(site)?;
+    say(&format!("the page works in {}", browsers.join(", ")));
+    notes.iter().for_each(|note| say(note));
     Ok(())
 }

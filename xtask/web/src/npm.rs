@@ -15,11 +15,10 @@ use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 4] = ["decoder", "animator", "three", "player"];
-const CHECK: [&str; 13] = [
+const CHECK: [&str; 12] = [
     "bundles.mjs",
     "check.mjs",
     "check.ts",
-    "firefox.mjs",
     "index.html",
     "main.ts",
     "pixels.html",
@@ -37,8 +36,6 @@ const DRAWN: [(&str, &str, f64); 3] = [
     ("gltf_khronos_cesium-man.glb", "0.005cm", 0.02),
     ("bvh_bandai1_dance.bvh", "0.05cm", 0.005),
 ];
-/// Programs that are Firefox.
-const FIREFOX: [&str; 2] = ["firefox-esr", "firefox"];
 
 /// A packed package.
 pub struct Packed {
@@ -93,11 +90,11 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
 pub struct Checked {
     /// What was measured in Node.
     pub measured: Value,
-    /// Where in browsers the element played.
+    /// Where in Chromium the element played.
     pub places: Vec<String>,
 }
 
-/// Uses the packages in a project of their own: in Node, with strict types, and in browsers, in bundles of Vite's, webpack's and esbuild's and without one.
+/// Uses the packages in a project of their own: in Node, with strict types, and in Chromium, in bundles of Vite's, webpack's and esbuild's and without one.
 pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
     let source = paths::root().join("web/packages/check");
     npm::install(&source, folder)?;
@@ -163,9 +160,6 @@ pub fn pixels(folder: &Path) -> Result<Vec<String>> {
 fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {
     let mut node = Command::new(setup::emulator("node")?);
     node.arg(program).args(arguments).current_dir(folder).envs(Browser::ready()?.environment());
-    if let Some(firefox) = FIREFOX.into_iter().find_map(paths::program) {
-        node.env("FIREFOX", firefox);
-    }
     let output = node.output().context("cannot start node")?;
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     ensure!(output.status.success(), "{program}: {out}{err}");
