@@ -139,12 +139,8 @@ fn our_character_is_that_of_the_crate_at_every_rate() {
     compare(&folder, "random inputs", &[&character], &reference::inputs(&table, UPDATES, &mut Sequence(1)));
 }
 
-/// A layer that names scalars of Live Link Face, of which a rig has the numbers alone.
-#[test]
-fn a_layer_finds_scalars_by_names_that_the_rig_does_not_spell() {
-    if setup::host_only("the animator in JavaScript") {
-        return;
-    }
+/// A bank whose layer names scalars of Live Link Face, of which its rig has the numbers alone.
+pub fn smiling() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let walk = motion("walk.keys").display().to_string();
     let mut list = String::new();
@@ -162,11 +158,19 @@ fn a_layer_finds_scalars_by_names_that_the_rig_does_not_spell() {
         let output = tool.args(arguments).current_dir(folder.path()).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
-    let bank = std::fs::read(folder.path().join("character.ptb")).unwrap();
+    std::fs::read(folder.path().join("character.ptb")).unwrap()
+}
+
+#[test]
+fn a_layer_finds_scalars_by_names_that_the_rig_does_not_spell() {
+    if setup::host_only("the animator in JavaScript") {
+        return;
+    }
+    let bank = smiling();
     let rig = Bank::new_checked(&bank).unwrap().rig();
     assert!(rig.scalars().any(|scalar| scalar.name() == "MouthSmileLeft"));
     let script = reference::inputs(&Table::of_bank(&bank).unwrap(), FEW_UPDATES, &mut Sequence(3));
-    assert_eq!(compare(&folder, "a layer of scalars", &[&bank], &script), 1);
+    assert_eq!(compare(&tempfile::tempdir().unwrap(), "a layer of scalars", &[&bank], &script), 1);
 }
 
 /// The files of a bank's clips that have snapshots.

@@ -23,6 +23,8 @@ use pantin_figure::solid::look_text;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::animator;
+
 /// Chromium, and the address of the page, built and served once for all tests, with some more files.
 static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
     let clips = extras().into_iter().map(|(name, bytes)| (format!("/extra/{name}.ptn"), bytes));
@@ -78,6 +80,7 @@ fn others() -> Vec<(String, Vec<u8>)> {
     let cat = String::from_utf8(read("motions/looks/cat.look")).unwrap();
     files.push(("/extra/cat.look".into(), look_text::compile(&cat).unwrap().to_vec()));
     files.push(("/extra/wrong.look".into(), b"# a comment\n\nradius hip 201\n".to_vec()));
+    files.push(("/extra/smiling.ptb".into(), animator::smiling()));
     for (name, module) in [("tables", "decoder"), ("clip", "decoder"), ("figure", "player")] {
         files.push((format!("/source/{name}.js"), read(&format!("web/packages/{module}/{name}.js"))));
     }

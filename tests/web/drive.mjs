@@ -1187,6 +1187,11 @@ const cases = {
         await one.picture();
         if (window.seen(one).colours < 4) throw new Error("nothing is drawn");
       }
+      // A layer names scalars of a list.
+      await one.load("extra/smiling.ptb");
+      one.fire("smile");
+      one.advance(0.5);
+      same([one.state, one.facts.scalars], ["rests", 2]);
       one.remove();
     });
 
