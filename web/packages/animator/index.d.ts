@@ -40,8 +40,8 @@ export interface Character extends Pose {
   inPlace: boolean;
   /** Fires an input: the next update sees it once. Throws a RangeError if there is no such input. */
   fire(input: string): void;
-  /** Holds an input down, or lets it go. Throws a RangeError if there is no such input. */
-  hold(input: string, isDown: boolean): void;
+  /** Holds an input down, or lets it go if `isDown` is false. Throws a RangeError if there is no such input. */
+  hold(input: string, isDown?: boolean): void;
   /** Sets a parameter, rounded and within its range. Throws a RangeError if there is no such parameter. */
   set(parameter: string, value: number): void;
   /** Lets time pass, and takes the transitions that are due. Throws an Error if a clip that a state begins to play is damaged; the state before then plays on. */

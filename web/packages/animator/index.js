@@ -83,7 +83,7 @@ export const openCharacter = (data) => {
       return { position: position(), heading: angle() };
     },
     fire: (input) => character.fire(indexOf(inputs, input, "input")),
-    hold: (input, isDown) => character.hold(indexOf(inputs, input, "input"), isDown),
+    hold: (input, isDown = true) => character.hold(indexOf(inputs, input, "input"), isDown),
     set: (name, value) => {
       const parameter = self.parameters[indexOf(parameters, name, "parameter")];
       const [low, high] = parameter.range;

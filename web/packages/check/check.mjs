@@ -59,7 +59,7 @@ for (let frame = 0; frame < clip.frames; frame += 7) {
 }
 const size = Math.max(...clip.joints.map(({ offset }) => Math.hypot(...offset)));
 assert.ok(farthest < 1e-4 * size, `a joint is ${farthest} away, where a bone has ${size}`);
-assert.throws(() => new PantinPose(clip, new Group()), /map/);
+assert.throws(() => new PantinPose(clip, new Group().add(Object.assign(new Bone(), { name: "thumb" }))), /map.*hips.*thumb/);
 
 // On bones of half the length, with axes of their own and other rest directions of the limbs below a joint, the limbs point where those of the clip do.
 const upright = new Quaternion().setFromUnitVectors(new Vector3(...clip.rig.up), new Vector3(0, 1, 0));
@@ -113,6 +113,13 @@ for (let picture = 0; picture < 480; picture++) {
   if (/walk|turn/.test(walker.state) && before) assert.ok(now.some((place, index) => place.distanceTo(before[index]) < 0.3), `picture ${picture}`);
   before = now;
 }
+// A figure that faces another way at rest walks that way: its way and its bones are turned.
+const aside = figure(new Group(), walker.joints);
+const turned90 = new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), Math.PI / 2);
+aside.bones.forEach(({ position }) => position.applyQuaternion(turned90));
+new PantinCharacter(walker, aside.root, { map, retarget: true });
+const there = walker.world();
+places(aside).forEach((place, joint) => assert.ok(walker.joints[joint].isEnd || place.distanceTo(new Vector3().fromArray(there, 3 * joint).applyQuaternion(turned90)) < 1e-4 * size, `${joint}`));
 const { position, heading } = walker.placement;
 assert.ok(position[2] > 300 && Math.abs(Math.abs(heading) - Math.PI / 2) < 0.1, `${position} ${heading}`);
 walker.inPlace = true;

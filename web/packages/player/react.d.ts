@@ -1,4 +1,4 @@
-// `import "@pantin/player/react"` defines the element, and lets JSX of React 18 and 19 have it.
+// `import "@pantin/player/react"` defines the element, and lets JSX of React 18 and 19 have it. Listeners in JSX need React 19.
 import type { DetailedHTMLProps, HTMLAttributes } from "react";
 import type { PantinPlayer, PantinPlayerAttributes, PantinPlayerListeners } from "@pantin/player";
 

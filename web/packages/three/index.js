@@ -95,7 +95,10 @@ class Binding {
       this.retargeting = new Retargeting(figure, this.joints, root.bones ? null : root, options);
       this.retargeting.entries.forEach((entry, index) => (this.joints[index].moves = this.retargeting.movers.includes(entry)));
     }
-    if (!this.joints.length && !this.scalars.length) throw new Error("no joint and no scalar has a node or a morph target of its name: give a map");
+    if (!this.joints.length && !this.scalars.length) {
+      const some = (names) => names.filter(Boolean).slice(0, 4).join(", ") || "none";
+      throw new Error(`no joint and no scalar has a node or a morph target of its name: give a map. Joints: ${some(this.missing.joints)}; nodes: ${some([...nodesOf(root).keys()])}`);
+    }
   }
 
   apply() {

@@ -2,6 +2,8 @@
 //
 // The world turn of a joint since its rest pose (that of the offsets alone) is put on what the bone's own rest pose has. M, the least turn that takes the
 // direction of the bone's limb at rest to that of the joint's, makes an A pose of a T pose; bones without a limb of their own take that of their parent.
+//
+// Bones of one parent, such as thighs or shoulders, lie beside each other in both figures: they tell whether one faces another way, by quarters of a turn.
 import { Matrix4, Quaternion, Vector3 } from "three";
 
 const NONE = new Quaternion();
@@ -40,7 +42,6 @@ export class Retargeting {
     this.travel = new Vector3();
     // From the clip's axes to those of three.js, where y is up.
     this.upright = new Quaternion().setFromUnitVectors(new Vector3(...rig.up), new Vector3(0, 1, 0));
-    const upside = this.upright.clone().invert();
     const rest = [];
     joints.forEach(({ parent, offset }, index) => (rest[index] = new Vector3(...offset).add(rest[parent] ?? new Vector3())));
     const byJoint = new Map(bound.map((entry) => [entry.joint, entry]));
@@ -62,6 +63,20 @@ export class Retargeting {
       own += entry.at.distanceTo(entry.parent.at);
       its += rest[entry.joint].distanceTo(rest[entry.parent.joint]);
     }
+    const place = ({ joint }) => rest[joint].clone().applyQuaternion(this.upright);
+    let [along, across] = [0, 0];
+    for (const { children } of entries) {
+      for (const [index, one] of children.entries()) {
+        for (const other of children.slice(index + 1)) {
+          const [a, b] = [one.at.clone().sub(other.at), place(one).sub(place(other))];
+          along += a.x * b.x + a.z * b.z;
+          across += a.x * b.z - a.z * b.x;
+        }
+      }
+    }
+    const quarters = Math.round(Math.atan2(across, along) / (Math.PI / 2));
+    this.upright.premultiply(new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), (quarters * Math.PI) / 2));
+    const upside = this.upright.clone().invert();
     this.scale = its > 0 && own > 0 ? own / its : 1;
     // The root moves, and what else moves in the clip and hangs in the same place: some figures travel by one joint and sway by the next. The others keep their bones' lengths.
     this.movers = entries.filter(({ joint, parent }) => !parent || (joints[joint].kinds.some((kind) => kind < 3) && rest[joint].distanceTo(rest[entries[0].joint]) <= its * 1e-6));

@@ -1,0 +1,3 @@
+"use client";
+// React renders the element in the browser: a server has no custom elements.
+export * from "./pantin-player.js";
