@@ -9,11 +9,9 @@ use crate::play::settings::Settings;
 use crate::play::steering;
 use crate::play::terminal::Terminal;
 use crate::words;
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use pantin::Bank;
-use pantin_animator::machine::{FEET_SECTION, SECTION};
-use pantin_convert::bank;
-use pantin_pictures::machine::{Source, Text, graph, make};
+use pantin_pictures::machine::{Compiled, Source, Text, Warning, compile, graph};
 use serde_json::json;
 use std::io::{IsTerminal, stdin, stdout};
 use std::path::{Path, PathBuf};
@@ -63,14 +61,9 @@ pub struct Arguments {
 
 /// A machine that was made.
 struct Built {
-    /// The bank with it.
-    whole: Vec<u8>,
+    compiled: Compiled,
+    /// The picture of its states, as SVG.
     graph: String,
-    warnings: Vec<String>,
-    clips: usize,
-    states: usize,
-    transitions: usize,
-    table_bytes: usize,
 }
 
 /// Runs the command.
@@ -92,14 +85,18 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(!is_bank_name(&arguments.input), "{place}: a bank; the state machine is a .toml file, and --bank names the bank");
     let (built, bank) = arguments.build(&memory::read(&arguments.input)?)?;
     arguments.write(&built)?;
-    let Built { whole, warnings, clips, states, transitions, table_bytes, .. } = built;
-    warnings.iter().for_each(|warning| note!("{place}: warning: {warning}"));
+    let Compiled { bank: whole, warnings, clips, states, transitions, table_bytes } = built.compiled;
+    for warning in &warnings {
+        let location = warning.location.as_ref().map_or(place.clone(), ToString::to_string);
+        note!("{location}: warning: {}", words::with_advice(&warning.text, warning.remedy));
+    }
+    let sentence = |warning: &Warning| words::with_advice(&warning.to_string(), warning.remedy);
     output::report(json!({
         "states": states,
         "transitions": transitions,
         "table_bytes": table_bytes,
         "bytes": whole.len(),
-        "warnings": warnings,
+        "warnings": warnings.iter().map(sentence).collect::<Vec<String>>(),
     }));
     let count = format!("{states} states, {transitions} transitions, a table of {table_bytes} bytes");
     match &arguments.output {
@@ -118,9 +115,7 @@ impl Arguments {
     /// Makes the machine of a text, and returns it with the path of the bank whose clips it plays.
     fn build(&self, text: &[u8]) -> Result<(Built, PathBuf)> {
         let place = self.input.display().to_string();
-        let text = std::str::from_utf8(text).map_err(|_| anyhow!("{place}: not text (UTF-8)"))?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let file = Text { name: &place, text };
+        let file = Text::new(&place, text)?;
         let source = Source::parse(&file)?;
         let beside = |path: &PathBuf| self.input.parent().unwrap_or(Path::new("")).join(path);
         let path = self.bank.clone().or_else(|| source.bank.as_ref().map(beside));
@@ -132,27 +127,14 @@ impl Arguments {
         if !is_bank(&bytes) {
             bail!("{}: not a bank; `pantin convert --same-form` and `pantin pack` make one", path.display());
         }
-        let bank = Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
-        let made = make(&source, &file, &bank)?;
-        let whole = bank::without_section(&bytes, FEET_SECTION)?;
-        let whole = bank::with_section(&whole, SECTION, &made.table)?;
-        let whole = made.feet.as_deref().map_or(Ok(whole.clone()), |feet| bank::with_section(&whole, FEET_SECTION, feet))?;
-        let transitions = source.any.len() + source.states.iter().map(|state| state.transitions.len()).sum::<usize>();
-        let built = Built {
-            whole,
-            graph: graph::svg(&source),
-            warnings: made.warnings.iter().map(|warning| words::with_advice(&warning.text, warning.remedy)).collect(),
-            clips: bank.len(),
-            states: source.states.len(),
-            transitions,
-            table_bytes: made.table.len(),
-        };
+        Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
+        let built = Built { compiled: compile(&source, &file, &bytes)?, graph: graph::svg(&source) };
         Ok((built, path))
     }
 
     /// Writes what is to be written.
     fn write(&self, built: &Built) -> Result<()> {
-        let files = [(&self.output, built.whole.as_slice()), (&self.graph, built.graph.as_bytes())];
+        let files = [(&self.output, built.compiled.bank.as_slice()), (&self.graph, built.graph.as_bytes())];
         let files: Vec<(&Path, &[u8])> = files.into_iter().filter_map(|(path, bytes)| Some((path.as_deref()?, bytes))).collect();
         output::write_together(&files)
     }
@@ -181,7 +163,7 @@ impl Arguments {
                 self.write(&built)?;
                 bank = path;
                 last.1 = changed(&bank);
-                Ok(built.whole)
+                Ok(built.compiled.bank)
             });
             Some(made)
         };

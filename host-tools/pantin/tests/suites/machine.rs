@@ -6,7 +6,7 @@ use pantin_animator::session::{Replay, Session};
 use pantin_animator::{Animator, Transition, Workspace};
 use pantin_convert::bank::{self, CheckedRig, Named};
 use pantin_pictures::machine::playback::{joints, play};
-use pantin_pictures::machine::{Source, Text, graph, make};
+use pantin_pictures::machine::{Location, Source, Text, compile, graph, inputs, make};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
@@ -452,7 +452,42 @@ fn warnings(text: &str) -> Vec<String> {
     let bytes = small_bank();
     let file = Text { name: "a.toml", text };
     let made = make(&Source::parse(&file).unwrap(), &file, &Bank::new_checked(&bytes).unwrap()).unwrap();
-    made.warnings.into_iter().map(|warning| warning.text).collect()
+    made.warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn errors_and_warnings_have_a_line_and_a_column() {
+    let bytes = small_bank();
+    let location = |text: &str| {
+        let file = Text { name: "a.toml", text };
+        let made = Source::parse(&file).and_then(|source| compile(&source, &file, &bytes));
+        made.unwrap_err().downcast_ref::<Location>().unwrap().at
+    };
+    let state = "[[state]]\nname = \"walk\"\n";
+    // Columns count characters.
+    let second = "transitions = [{ to = \"walk\", input = \"ö\" }, { to = \"x\", input = \"a\" }]\n";
+    assert_eq!(location(&format!("{state}{second}")), Some((3, 46)));
+    assert_eq!(location(&format!("{state}clip = \"fly\"\n")), Some((3, 8)));
+    assert_eq!(location(&format!("{state}speed = 9.0\n")), Some((2, 8)));
+    assert_eq!(location(&format!("{state}blend = {{ clip = \"run\", by = \"v\" }}\n")), Some((3, 9)));
+    assert_eq!(location(&format!("{state}transitions = 1\n")), Some((3, 15)));
+    assert_eq!(location("state = []\n"), None);
+    let unused = format!("[[parameter]]\nname = \"v\"\nrange = [0, 9]\n{state}");
+    let file = Text { name: "a.toml", text: &unused };
+    let made = compile(&Source::parse(&file).unwrap(), &file, &bytes).unwrap();
+    assert_eq!(made.warnings[0].location.as_ref().unwrap().at, Some((2, 8)));
+}
+
+#[test]
+fn inputs_that_do_something_and_those_that_are_held_are_known() {
+    let bytes = small_bank();
+    let layer = "\n[[layer]]\nclip = \"run\"\ninput = \"hurry\"\njoints = [\"*\"]\nstates = [\"run\"]\n";
+    let text = format!("{SMALL}{layer}");
+    let source = Source::parse(&Text { name: "a.toml", text: &text }).unwrap();
+    let own = [("stop", vec!["go", "halt"]), ("go", vec!["go", "halt"]), ("run", vec!["halt", "hurry"])];
+    assert_eq!(inputs::of_states(&source), own);
+    // A loop plays as long as its input is held.
+    assert_eq!(inputs::held(&source, &Bank::new_checked(&bytes).unwrap()).into_iter().collect::<Vec<_>>(), ["go", "hurry"]);
 }
 
 #[test]
@@ -483,7 +518,7 @@ fn states_between_which_held_inputs_go_back_and_forth_are_warned_of() {
     let found = warnings(&two(&to_run("input = \"fast\""), &to_walk("input = \"slow\"")));
     let told = found.iter().find(|text| text.contains("back and forth")).unwrap();
     assert!(
-        told.starts_with("line 6: states `walk` and `run`: ") && told.contains("the transition of line 9 leads back"),
+        told.starts_with("a.toml:6: states `walk` and `run`: ") && told.contains("the transition of line 9 leads back"),
         "{told}"
     );
     // A transition before it that is taken under the same condition hides one.

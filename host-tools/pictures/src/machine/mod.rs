@@ -2,10 +2,13 @@
 //!
 //! The text is TOML; `firmware/animator/MACHINE.md` describes it.
 
+mod compile;
 pub mod graph;
+pub mod inputs;
 pub mod playback;
 mod source;
 mod table;
 
-pub use source::{Source, Text};
+pub use compile::{Compiled, compile};
+pub use source::{Location, Source, Text};
 pub use table::{Made, Warning, make};

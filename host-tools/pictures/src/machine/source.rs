@@ -159,7 +159,7 @@ pub enum Kind {
 
 /// The frame at which a clip starts.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a frame's number or \"in-step\"")]
 pub enum Start {
     /// A frame's number.
     Frame(u32),
@@ -168,12 +168,17 @@ pub enum Start {
 }
 
 impl Source {
-    /// Reads the file's text. Errors name the line.
+    /// Reads the file's text. Errors have a [`Location`].
     pub fn parse(file: &Text) -> Result<Source> {
-        toml::from_str(file.text).map_err(|error| match error.span() {
-            Some(span) => anyhow!("{}: {}", file.at(span), error.message()),
-            None => anyhow!("{}: {}", file.name, error.message()),
+        toml::from_str(file.text).map_err(|error| {
+            let location = error.span().map_or(file.whole(), |span| file.at(span));
+            location.error(error.message())
         })
+    }
+
+    /// Transitions, those from any state included.
+    pub fn transition_count(&self) -> usize {
+        self.any.len() + self.states.iter().map(|state| state.transitions.len()).sum::<usize>()
     }
 }
 
@@ -186,15 +191,53 @@ pub struct Text<'t> {
     pub text: &'t str,
 }
 
-impl Text<'_> {
-    /// The file, and the line of a place in its text.
-    pub fn at(&self, span: Range<usize>) -> String {
-        format!("{}:{}", self.name, self.line(span))
+impl<'t> Text<'t> {
+    /// The text of a file's bytes. A byte order mark is skipped. Fails for bytes that are not UTF-8.
+    pub fn new(name: &'t str, bytes: &'t [u8]) -> Result<Text<'t>> {
+        let text = std::str::from_utf8(bytes).map_err(|_| anyhow!("{name}: not text (UTF-8)"))?;
+        Ok(Text { name, text: text.strip_prefix('\u{feff}').unwrap_or(text) })
     }
 
-    /// The line of a place, from 1.
+    /// The location of a span of bytes of the text: where it begins.
+    pub fn at(&self, span: Range<usize>) -> Location {
+        let before = self.text.get(..span.start).unwrap_or(self.text);
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        Location { file: self.name.into(), at: Some((self.line(span), column)) }
+    }
+
+    /// The file as a whole.
+    pub fn whole(&self) -> Location {
+        Location { file: self.name.into(), at: None }
+    }
+
+    /// The line on which a span of bytes begins, from 1.
     pub fn line(&self, span: Range<usize>) -> usize {
         self.text.as_bytes().iter().take(span.start).filter(|&&byte| byte == b'\n').count() + 1
+    }
+}
+
+/// Where in a file an error or a warning belongs. It is the outermost context of errors: `error.downcast_ref::<Location>()`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// The name of the file, as in [`Text::name`].
+    pub file: String,
+    /// The line and the column, both from 1; a column counts characters. `None`: the file as a whole.
+    pub at: Option<(usize, usize)>,
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.at {
+            Some((line, _)) => write!(out, "{}:{line}", self.file),
+            None => out.write_str(&self.file),
+        }
+    }
+}
+
+impl Location {
+    /// An error at this location.
+    pub(super) fn error(&self, text: impl fmt::Display) -> anyhow::Error {
+        anyhow!("{text}").context(self.clone())
     }
 }
 

@@ -1,7 +1,7 @@
 //! The clips that a machine's states and layers name.
 
 use super::{Maker, NONE};
-use crate::machine::source::{State, Text};
+use crate::machine::source::{Location, State, Text};
 use anyhow::{Context, Result};
 use pantin::{Bank, Clip};
 use pantin_convert::import::text::quoted;
@@ -37,7 +37,7 @@ impl<'b> Maker<'_, 'b> {
     }
 
     /// Where the file names a state's clip.
-    pub(super) fn place_of_clip(&self, state: &State, file: &Text) -> String {
+    pub(super) fn place_of_clip(&self, state: &State, file: &Text) -> Location {
         file.at(state.clip.as_ref().unwrap_or(&state.name).span())
     }
 

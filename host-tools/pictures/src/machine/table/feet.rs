@@ -90,14 +90,13 @@ impl Maker<'_, '_> {
                 let ([most, change], seconds) = (acceleration(from, to, &pairs, length, speeds), length as f64 * to.frame_time());
                 if row.kind != Kind::Cut && most > MOST_ACCELERATION {
                     let text = format!(
-                        "{}: state {}: the velocity of the figure would change by {:.1} m/s in the {seconds:.2} s to {}, faster than a body can: \
+                        "state {}: the velocity of the figure would change by {:.1} m/s in the {seconds:.2} s to {}, faster than a body can: \
                          a blend of both, or a state between the two, looks better",
-                        file.at(transition.span()),
                         quoted(state.name.get_ref()),
                         change / 100.0,
                         quoted(&row.to),
                     );
-                    self.warnings.push(Warning::new(text, None));
+                    self.warnings.push(Warning::at(file.at(transition.span()), text));
                 }
             }
         }
@@ -110,17 +109,17 @@ impl Maker<'_, '_> {
         for (state, row) in transitions.chain(source.any.iter().map(|row| (None, row))) {
             let (place, own) = (file.at(row.span()), row.get_ref());
             let wait = own.sync.is_some();
-            ensure!(wait || own.within.is_none(), "{place}: within: only a transition with sync = \"feet\" waits");
-            ensure!(!wait || source.feet.is_some(), "{place}: sync = \"feet\" needs feet: write [feet] above the states");
-            ensure!(!wait || state.is_some(), "{place}: sync = \"feet\": a transition from any state does not wait");
-            ensure!(!wait || own.end.is_none(), "{place}: sync = \"feet\": a transition at a clip's end does not wait");
+            ensure!(wait || own.within.is_none(), place.error("within: only a transition with sync = \"feet\" waits"));
+            ensure!(!wait || source.feet.is_some(), place.error("sync = \"feet\" needs feet: write [feet] above the states"));
+            ensure!(!wait || state.is_some(), place.error("sync = \"feet\": a transition from any state does not wait"));
+            ensure!(!wait || own.end.is_none(), place.error("sync = \"feet\": a transition at a clip's end does not wait"));
             ensure!(
                 !wait || state.and_then(|state| state.speed).is_none_or(|speed| speed > 0.0),
-                "{place}: sync = \"feet\": the state plays backwards, or stands"
+                place.error("sync = \"feet\": the state plays backwards, or stands")
             );
             ensure!(
                 own.within.is_none_or(|within| within > 0.0 && within <= 4.0),
-                "{place}: within: expected a time above 0, at most 4 s"
+                place.error("within: expected a time above 0, at most 4 s")
             );
         }
         Ok(())

@@ -76,21 +76,16 @@ impl Maker<'_, '_> {
                     both.then(|| (needs, lists[one].1[there], lists[other].1[back]))
                 });
                 if let Some((needs, there, back)) = together {
-                    let text = self.flicker([&source.states[one], &source.states[other]], &needs, [there, back], file, source);
-                    self.warnings.push(Warning::new(text, None));
+                    let states = [&source.states[one], &source.states[other]];
+                    let text = self.flicker(states, &needs, file.line(back.span()), source);
+                    self.warnings.push(Warning::at(file.at(there.span()), text));
                 }
             }
         }
     }
 
-    fn flicker(
-        &self,
-        states: [&State; 2],
-        needs: &Needs,
-        ways: [&Spanned<Transition>; 2],
-        file: &Text,
-        source: &Source,
-    ) -> String {
+    /// The text of the warning; `back` is the line of the transition that leads back.
+    fn flicker(&self, states: [&State; 2], needs: &Needs, back: usize, source: &Source) -> String {
         let input = |index: &u8| quoted(&self.inputs[usize::from(*index)]);
         let held = needs.held.iter().map(|(index, held)| format!("{} is {}held", input(index), if *held { "" } else { "not " }));
         let within = needs.within.iter().map(|(index, (least, most))| {
@@ -98,9 +93,8 @@ impl Maker<'_, '_> {
         });
         let when: Vec<String> = held.chain(within).collect();
         let [one, other] = states.map(|state| quoted(state.name.get_ref()));
-        let [there, back] = ways.map(|way| file.line(way.span()));
         format!(
-            "line {there}: states {one} and {other}: while {}, the machine goes back and forth between them at every update: the transition of line {back} leads back under a condition that holds at the same time. Let one of the two fail while the other holds, such as `released` in place of `input`",
+            "states {one} and {other}: while {}, the machine goes back and forth between them at every update: the transition of line {back} leads back under a condition that holds at the same time. Let one of the two fail while the other holds, such as `released` in place of `input`",
             when.join(" and ")
         )
     }

@@ -12,7 +12,7 @@ mod warnings;
 pub use warnings::Warning;
 
 use super::source::{Source, Text};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use clips::Clips;
 use pantin::Bank;
 use pantin::codec::crc;
@@ -42,7 +42,7 @@ pub struct Made {
     pub warnings: Vec<Warning>,
 }
 
-/// Builds the table of a machine for the clips of a bank. Errors name the `file` from which `source` was read, and the line.
+/// Builds the table of a machine for the clips of a bank. Errors have a [`Location`](super::Location) in the `file` from which `source` was read, unless a clip is damaged.
 pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let mut maker = Maker::new(source, file, bank)?;
     let rows = maker.rows(source, file)?;
@@ -54,7 +54,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let feet = source
         .feet
         .as_ref()
-        .map(|feet| maker.feet(feet.get_ref(), source, file).with_context(|| format!("{}: feet", file.at(feet.span()))));
+        .map(|feet| maker.feet(feet.get_ref(), source, file).context("feet").with_context(|| file.at(feet.span())));
     Ok(Made { table, feet: feet.transpose()?, warnings: maker.warnings })
 }
 
@@ -92,12 +92,12 @@ impl<'s, 'b> Maker<'s, 'b> {
     fn rows(&mut self, source: &'s Source, file: &Text) -> Result<Rows> {
         let first = match &source.start {
             None => 0,
-            Some(start) => self.state(start.get_ref()).with_context(|| format!("{}: start", file.at(start.span())))?,
+            Some(start) => self.state(start.get_ref()).context("start").with_context(|| file.at(start.span()))?,
         };
         // Before a transition asks for the clip that it leads to: the error belongs to the state that names it.
         for state in &source.states {
-            let place = || format!("{}: state {}", self.place_of_clip(state, file), quoted(state.name.get_ref()));
-            self.clip_of(state).with_context(place)?;
+            let found = self.clip_of(state).with_context(|| format!("state {}", quoted(state.name.get_ref())));
+            found.with_context(|| self.place_of_clip(state, file))?;
         }
         let any = self.transitions(&source.any, source, file, None, &[])?;
         let (mut states, mut transitions) = (Vec::new(), any.clone());
@@ -111,13 +111,14 @@ impl<'s, 'b> Maker<'s, 'b> {
         }
         self.warn_of_flicker(source, file, &any, &of_states);
         self.warn_of_forms(source)?;
-        let name = file.name;
-        ensure!(transitions.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", transitions.len());
-        ensure!(source.layers.len() <= LAYERS, "{name}: {} layers; at most {LAYERS}", source.layers.len());
+        let (whole, [transition_count, layer_count]) = (file.whole(), [transitions.len(), source.layers.len()]);
+        let many = || whole.error(format!("{transition_count} transitions; at most {MOST_TRANSITIONS}"));
+        ensure!(transition_count <= MOST_TRANSITIONS, many());
+        ensure!(layer_count <= LAYERS, whole.error(format!("{layer_count} layers; at most {LAYERS}")));
         let mut layers = Vec::new();
         for layer in &source.layers {
             let row = self.layer_row(layer.get_ref(), source);
-            layers.push(row.with_context(|| format!("{}: layer", file.at(layer.span())))?);
+            layers.push(row.context("layer").with_context(|| file.at(layer.span()))?);
         }
         Ok(Rows { first, states, transitions, layers })
     }
@@ -157,8 +158,9 @@ fn check(table: &[u8], source: &Source, file: &Text, bank: &Bank<'_>) -> Result<
         Ok(_) => Ok(()),
         Err(TableError::Unreachable(state)) => {
             let state = &source.states[usize::from(state)].name;
-            bail!("{}: no transition leads to state {}", file.at(state.span()), quoted(state.get_ref()));
+            let text = format!("no transition leads to state {}", quoted(state.get_ref()));
+            Err(file.at(state.span()).error(text))
         }
-        Err(error) => bail!("{}: {error}", file.name),
+        Err(error) => Err(file.whole().error(error)),
     }
 }

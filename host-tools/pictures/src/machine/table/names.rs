@@ -12,10 +12,11 @@ pub(super) const NAME_BYTES: usize = 255;
 
 /// The states with their indices, and the parameters. Fails for duplicates, names that are empty or too long, and ranges that are empty.
 pub(super) fn check<'s>(source: &'s Source, file: &Text) -> Result<(BTreeMap<&'s str, u8>, Vec<&'s str>)> {
-    let name = file.name;
-    ensure!(!source.states.is_empty(), "{name}: a state machine has at least one [[state]]");
-    ensure!(source.states.len() <= STATES, "{name}: {} states; at most {STATES}", source.states.len());
-    ensure!(source.parameters.len() <= PARAMETERS, "{name}: {} parameters; at most {PARAMETERS}", source.parameters.len());
+    let whole = file.whole();
+    let [state_count, parameter_count] = [source.states.len(), source.parameters.len()];
+    ensure!(state_count > 0, whole.error("a state machine has at least one [[state]]"));
+    ensure!(state_count <= STATES, whole.error(format!("{state_count} states; at most {STATES}")));
+    ensure!(parameter_count <= PARAMETERS, whole.error(format!("{parameter_count} parameters; at most {PARAMETERS}")));
     Ok((states(source, file)?, parameters(source, file)?))
 }
 
@@ -24,7 +25,8 @@ fn states<'s>(source: &'s Source, file: &Text) -> Result<BTreeMap<&'s str, u8>> 
     for (index, state) in source.states.iter().enumerate() {
         let (name, place) = (state.name.get_ref(), file.at(state.name.span()));
         check_name(name).with_context(|| place.clone())?;
-        ensure!(names.insert(name.as_str(), index as u8).is_none(), "{place}: two states are called {}", quoted(name));
+        let twice = names.insert(name.as_str(), index as u8).is_some();
+        ensure!(!twice, place.error(format!("two states are called {}", quoted(name))));
     }
     Ok(names)
 }
@@ -34,14 +36,14 @@ fn parameters<'s>(source: &'s Source, file: &Text) -> Result<Vec<&'s str>> {
     for parameter in &source.parameters {
         let (name, place) = (parameter.name.get_ref(), file.at(parameter.name.span()));
         check_name(name).with_context(|| place.clone())?;
-        ensure!(!parameters.contains(&name.as_str()), "{place}: two parameters are called {}", quoted(name));
+        let twice = parameters.contains(&name.as_str());
+        ensure!(!twice, place.error(format!("two parameters are called {}", quoted(name))));
         let (least, most) = parameter.range;
-        ensure!(least < most, "{place}: parameter {}: the range {least} to {most} is empty", quoted(name));
+        ensure!(least < most, place.error(format!("parameter {}: the range {least} to {most} is empty", quoted(name))));
         let first = parameter.first.unwrap_or(least);
         ensure!(
             (least..=most).contains(&first),
-            "{place}: parameter {}: {first} is outside its range {least} to {most}",
-            quoted(name)
+            place.error(format!("parameter {}: {first} is outside its range {least} to {most}", quoted(name)))
         );
         parameters.push(name);
     }

@@ -32,13 +32,14 @@ impl<'s> Maker<'s, '_> {
         if let Some(blend) = &state.blend {
             let place = file.at(blend.span());
             let blend = blend.get_ref();
-            let named = self.clips.find(&blend.clip).and_then(|clip| Ok((clip, self.parameter(&blend.by)?)));
-            (other, parameter) = named.with_context(|| format!("{place}: state {name}: blend"))?;
-            follow = time(blend.seconds.unwrap_or(FOLLOW)).with_context(|| format!("{place}: state {name}: blend"))?;
+            let found = self.clips.find(&blend.clip);
+            let named = found.and_then(|clip| Ok((clip, self.parameter(&blend.by)?, time(blend.seconds.unwrap_or(FOLLOW))?)));
+            let named = named.with_context(|| format!("state {name}: blend")).with_context(|| place.clone());
+            (other, parameter, follow) = named?;
             let [own, its] = [clip, other].map(|index| &self.clips.all[usize::from(index)]);
             if own.1.form().check(its.1.form_ref()).is_err() {
                 let [own, its] = [quoted(own.0), quoted(its.0)];
-                return Err(other_form(format!("{place}: state {name}: the clips {own} and {its} have different forms")));
+                return Err(other_form(format!("state {name}: the clips {own} and {its} have different forms")).context(place));
             }
             let steps =
                 |clip: &Clip| clip.event_id(pantin::LEFT_FOOT_DOWN).is_some() || clip.event_id(pantin::RIGHT_FOOT_DOWN).is_some();
@@ -50,12 +51,11 @@ impl<'s> Maker<'s, '_> {
             }
         }
         let speed = state.speed.unwrap_or(1.0);
-        ensure!((-4.0..=4.0).contains(&speed), "{place}: state {name}: the speed {speed} is outside -4 to 4");
+        ensure!((-4.0..=4.0).contains(&speed), place.error(format!("state {name}: the speed {speed} is outside -4 to 4")));
         let rounded = (speed * SPEED_ONE).round();
         ensure!(
             speed == 0.0 || rounded != 0.0,
-            "{place}: state {name}: the speed {speed} would be stored as 0; the slowest is {}",
-            1.0 / SPEED_ONE
+            place.error(format!("state {name}: the speed {speed} would be stored as 0; the slowest is {}", 1.0 / SPEED_ONE))
         );
         let [low, high] = (rounded as i16).to_le_bytes();
         let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));

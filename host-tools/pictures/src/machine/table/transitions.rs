@@ -2,7 +2,7 @@
 
 use super::{Maker, NONE, Row, SECONDS};
 use crate::machine::source::{Cause, Kind, Source, Start, State, Text, Transition};
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Error, Result, anyhow, bail, ensure};
 use pantin::Clip;
 use pantin_convert::import::text::quoted;
 use toml::Spanned;
@@ -37,16 +37,19 @@ impl<'s> Maker<'s, '_> {
         let own = from.map(|state| self.names[state.name.get_ref().as_str()]);
         let mut rows: Vec<Row> = Vec::new();
         for entry in entries {
-            let place = || match from {
-                Some(state) => format!("{}: state {}", file.at(entry.span()), quoted(state.name.get_ref())),
-                None => file.at(entry.span()),
+            let placed = |error: Error| {
+                let error = match from {
+                    Some(state) => error.context(format!("state {}", quoted(state.name.get_ref()))),
+                    None => error,
+                };
+                error.context(file.at(entry.span()))
             };
-            let row = self.transition(entry.get_ref(), source, from).with_context(place)?;
+            let row = self.transition(entry.get_ref(), source, from).map_err(placed)?;
             let hidden = rows.iter().any(|other| hides(other, &row));
-            ensure!(!hidden, "{}: a transition before this one happens whenever this one could", place());
+            ensure!(!hidden, placed(anyhow!("a transition before this one happens whenever this one could")));
             // A transition of any state does not happen in the state that it leads to.
             let hidden = any.iter().any(|other| Some(other[4]) != own && hides(other, &row));
-            ensure!(!hidden, "{}: a transition of any state ([[any]]) happens whenever this one could", place());
+            ensure!(!hidden, placed(anyhow!("a transition of any state ([[any]]) happens whenever this one could")));
             rows.push(row);
         }
         Ok(rows)

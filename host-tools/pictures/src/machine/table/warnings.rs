@@ -1,15 +1,18 @@
 //! What is odd about a state machine.
 
 use super::Maker;
-use crate::machine::source::{Source, State, Text};
+use crate::machine::source::{Location, Source, State, Text};
 use anyhow::Result;
 use pantin::Bank;
 use pantin_convert::import::text::quoted;
 use pantin_convert::{Memory, Remedy};
+use std::fmt;
 
 /// What is odd about a state machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
+    /// Where in the text it belongs, if it belongs to a part of it.
+    pub location: Option<Location>,
     /// A sentence without a full stop.
     pub text: String,
     /// What would help.
@@ -17,8 +20,23 @@ pub struct Warning {
 }
 
 impl Warning {
+    /// A warning about all of the machine, or about the clips.
     pub(super) fn new(text: String, remedy: Option<Remedy>) -> Warning {
-        Warning { text, remedy }
+        Warning { location: None, text, remedy }
+    }
+
+    /// A warning about a part of the text.
+    pub(super) fn at(location: Location, text: String) -> Warning {
+        Warning { location: Some(location), text, remedy: None }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(location) = &self.location {
+            write!(out, "{location}: ")?;
+        }
+        out.write_str(&self.text)
     }
 }
 
@@ -57,12 +75,11 @@ impl Maker<'_, '_> {
         let (name, clip) = self.played(state)?;
         if !clip.looped() && state.transitions.is_empty() && source.any.is_empty() {
             let text = format!(
-                "line {}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
-                file.line(state.name.span()),
+                "state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
                 quoted(state.name.get_ref()),
                 quoted(name)
             );
-            self.warnings.push(Warning::new(text, None));
+            self.warnings.push(Warning::at(file.at(state.name.span()), text));
         }
         Ok(())
     }
@@ -70,9 +87,8 @@ impl Maker<'_, '_> {
     /// Warns of parameters that nothing names.
     pub(super) fn warn_of_unused(&mut self, source: &Source, file: &Text) {
         for (parameter, _) in source.parameters.iter().zip(&self.used).filter(|(_, used)| !used.get()) {
-            let place = file.at(parameter.name.span());
-            let text = format!("{place}: parameter {}: no blend and no transition uses it", quoted(parameter.name.get_ref()));
-            self.warnings.push(Warning::new(text, None));
+            let text = format!("parameter {}: no blend and no transition uses it", quoted(parameter.name.get_ref()));
+            self.warnings.push(Warning::at(file.at(parameter.name.span()), text));
         }
     }
 }
