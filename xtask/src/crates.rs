@@ -14,7 +14,7 @@ use crate::paths;
 const WORKSPACES: [&str; 3] = ["", "bindings/python", "web"];
 
 /// What a group may need. Crates of a group have a folder in common, or are named.
-const MAY_NEED: [(&str, &[&str]); 9] = [
+const MAY_NEED: [(&str, &[&str]); 10] = [
     ("decoder", &[]),
     ("firmware", &["decoder", "firmware"]),
     ("host-tools/convert", &["decoder", "firmware/figure"]),
@@ -23,6 +23,7 @@ const MAY_NEED: [(&str, &[&str]); 9] = [
     ("host-tools/pictures", &["decoder", "firmware", "host-tools/convert", "host-tools/images"]),
     ("host-tools/line", &["decoder", "firmware", "host-tools/convert"]),
     ("bindings/python", &["decoder", "firmware/figure", "host-tools/convert"]),
+    ("web/machine", &["decoder", "host-tools/convert", "host-tools/pictures", "web/worker"]),
     ("web", &["decoder", "firmware", "host-tools/convert", "web"]),
 ];
 

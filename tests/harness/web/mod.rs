@@ -9,7 +9,9 @@ use anyhow::{Context, Result};
 use pantin_tools::serve::{Site, Times, serve};
 
 pub use xtask::browser;
-pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, face_module, player_module, sizes};
+pub use xtask_web::site::{
+    CHARACTER, CONVERTER, EXPORT, FACE, MACHINE, OTHERS, PLAYER, Size, build, face_module, player_module, sizes,
+};
 pub use xtask_web::{arduino, browsers, bundle, tools};
 
 use crate::paths;

@@ -46,7 +46,9 @@ impl Web {
     /// Builds it and prints its sizes.
     fn run(self) -> Result<()> {
         site::build(&self.out, &self.inline)?;
-        for names in [&site::PLAYER[..], &site::OTHERS, &site::EXPORT, &site::FACE, &site::CHARACTER, &site::CONVERTER] {
+        for names in
+            [&site::PLAYER[..], &site::OTHERS, &site::EXPORT, &site::FACE, &site::CHARACTER, &site::CONVERTER, &site::MACHINE]
+        {
             let sizes = site::sizes(&self.out, names);
             sizes.iter().for_each(|Size { name, bytes }| say(&format!("{name:<24} {bytes:>9} bytes")));
         }

@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 
-use crate::site::listed;
+use crate::site::{MACHINE, listed};
 
 /// Its script among the page's, and what it has in place of the build's name and of the list.
 pub const SCRIPT: &str = "offline.js";
 const BUILD: &str = "@BUILD@";
 const FILES: &str = "[\"@FILES@\"]";
 /// The ends of names of files that the page needs from the start on. Others, such as the converter, are kept once they were fetched.
-const KEPT: [&str; 7] = ["js", "css", "json", "ptn", "ptb", "look", "svg"];
+const KEPT: [&str; 8] = ["js", "css", "json", "ptn", "ptb", "look", "svg", "toml"];
+/// A module among them: it is small.
+const KEPT_MODULE: &str = MACHINE[2];
 
 /// The script for a site whose other files are there.
 pub fn filled(site: &Path, script: &str) -> Result<String> {
@@ -30,7 +32,7 @@ pub fn filled(site: &Path, script: &str) -> Result<String> {
         for byte in name.bytes().chain([0]).chain(bytes) {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
         }
-        if KEPT.contains(&&*end(&file)) {
+        if KEPT.contains(&&*end(&file)) || file.ends_with(KEPT_MODULE) {
             names.push(name);
         }
     }
@@ -48,11 +50,20 @@ mod tests {
         let site = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(site.path().join(name), text).unwrap();
         std::fs::create_dir(site.path().join("clips")).unwrap();
-        for name in ["index.html", "app.js", "app.js.br", "offline.js", "large.wasm", "clips/walk.ptn", "clips/walk.bvh"] {
+        for name in [
+            "index.html",
+            "app.js",
+            "app.js.br",
+            "offline.js",
+            "large.wasm",
+            "pantin-machine.wasm",
+            "clips/walk.ptn",
+            "clips/walk.bvh",
+        ] {
             write(name, "1");
         }
         let first = filled(site.path(), SCRIPT).unwrap();
-        assert!(first.ends_with(r#"FILES = ["","app.js","clips/walk.ptn"];"#), "{first}");
+        assert!(first.ends_with(r#"FILES = ["","app.js","pantin-machine.wasm","clips/walk.ptn"];"#), "{first}");
         for (name, is_part) in [("app.js.br", false), ("offline.js", false), ("clips/walk.bvh", true), ("index.html", true)] {
             let before = filled(site.path(), SCRIPT).unwrap();
             write(name, "2");

@@ -1,5 +1,6 @@
 //! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -19,10 +20,24 @@ use crate::{bundle, compare, downloads, inline, offline, pack, script, tools};
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// For small modules: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
-const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
+const SMALL: &str = "-Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
+/// For modules without the standard library, too: a small stack.
+const SMALL_STACK: &str = "-Clink-arg=-zstack-size=65536";
 
-/// The converter's package, the profile that it is built in, and its name in the site.
-const MODULE: (&str, &str, &str) = ("pantin-web-converter", "converter", CONVERTER[1]);
+/// A module that a worker of the page loads.
+struct Module {
+    /// Its package in the web workspace.
+    package: &'static str,
+    /// The profile that it is built in.
+    profile: &'static str,
+    /// Its name in the site.
+    name: &'static str,
+}
+
+const MODULES: [Module; 2] = [
+    Module { package: "pantin-web-converter", profile: "converter", name: CONVERTER[1] },
+    Module { package: "pantin-web-machine", profile: "machine", name: MACHINE[2] },
+];
 
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {
@@ -54,15 +69,18 @@ pub const FACE: [&str; 1] = ["pantin-face.js"];
 /// What it loads too for a bank, for one with a state machine, and for one with a table of feet.
 pub const CHARACTER: [&str; 3] = ["pantin-bank.js", "pantin-character.js", "pantin-feet.js"];
 /// What is loaded beside it once a motion is dropped.
-pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
+pub const CONVERTER: [&str; 3] = ["converter.js", "pantin-converter.wasm", "wasm.js"];
+/// What is loaded beside it once the text of the character's state machine is opened.
+pub const MACHINE: [&str; 4] = ["machine.js", "machine-worker.js", "pantin-machine.wasm", "wasm.js"];
 
 /// Builds the site into a folder, in place of what of it was there, and a page in one file for each of the `inlined` clips.
 pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
-    let (package, profile, name) = MODULE;
-    write(&out.join(name), &module(package, "", profile)?)?;
+    for Module { package, profile, name } in MODULES {
+        write(&out.join(name), &module(package, "", profile)?)?;
+    }
     let page = listed(&paths::root().join("web/page"))?;
     let packages = paths::root().join("web/packages");
     for (name, modules) in bundle::SCRIPTS {
@@ -120,7 +138,12 @@ pub fn face_module() -> Result<Vec<u8>> {
 /// A package of the web workspace as a module.
 fn module(package: &str, features: &str, profile: &str) -> Result<Vec<u8>> {
     let arguments = ["--profile", profile, "--package", package, "--features", features, "--target", TARGET];
-    let environment = (profile == "release").then(|| ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS".into(), SMALL.into()));
+    let flags = match profile {
+        "release" => Some(format!("{SMALL_STACK} {SMALL}")),
+        "machine" => Some(SMALL.into()),
+        _ => None,
+    };
+    let environment = flags.map(|flags| ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS".into(), flags.into()));
     let product = build::cargo(&Build {
         workspace: paths::root().join("web"),
         arguments: arguments.map(OsString::from).into(),
@@ -129,7 +152,7 @@ fn module(package: &str, features: &str, profile: &str) -> Result<Vec<u8>> {
         ..Build::default()
     })?;
     let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
-    // The converter works for seconds, and the optimizer would take minutes for it.
+    // The optimizer would take minutes for the converter, and does not make the compiler of state machines smaller as sent.
     let bytes = if profile == "release" { tools::optimized(bytes)? } else { bytes };
     pack::pack(&bytes).with_context(|| product.display().to_string())
 }
@@ -181,32 +204,20 @@ fn emotes(out: &Path) -> Result<()> {
     write(&out.join("clips/emotes.json"), json!(list).to_string().as_bytes())
 }
 
-/// Our character, with the picture of its state machine, the inputs that do something in each state, and our characters of the solid figure.
+/// Our character, with the text and the picture of its state machine, the inputs that do something in each state, and our characters of the solid figure.
 fn character(out: &Path) -> Result<()> {
-    write(&out.join("clips/character.ptb"), &std::fs::read(paths::root().join("motions/character.ptb"))?)?;
     let path = paths::root().join("motions/character.toml");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    write(&out.join("clips/character.ptb"), &std::fs::read(paths::root().join("motions/character.ptb"))?)?;
+    write(&out.join("clips/character.toml"), text.as_bytes())?;
     let source = machine::Source::parse(&machine::Text { name: "character.toml", text: &text })?;
-    write(&out.join("clips/character.json"), inputs(&source).to_string().as_bytes())?;
+    let inputs: BTreeMap<_, _> = machine::inputs::of_states(&source).into_iter().collect();
+    write(&out.join("clips/character.json"), json!(inputs).to_string().as_bytes())?;
     for look in listed(&paths::root().join("motions/looks"))? {
         let bytes = std::fs::read(&look).with_context(|| look.display().to_string())?;
         write(&out.join("clips").join(look.file_name().unwrap_or_default()), &bytes)?;
     }
     write(&out.join("clips/character.svg"), machine::graph::svg(&source).as_bytes())
-}
-
-/// The inputs that do something in each state of a machine, by the state's name: they lead to another one, or play a layer.
-fn inputs(source: &machine::Source) -> serde_json::Value {
-    let states = source.states.iter().map(|state| {
-        let name = state.name.get_ref();
-        let rows = state.transitions.iter().chain(&source.any).map(|row| row.get_ref());
-        let led = rows.flat_map(|row| [&row.input, &row.released]).flatten();
-        let layers = source.layers.iter().map(|layer| layer.get_ref());
-        let played =
-            layers.filter(|layer| layer.states.as_ref().is_none_or(|states| states.contains(name))).map(|layer| &layer.input);
-        (name.clone(), json!(led.chain(played).collect::<Vec<_>>()))
-    });
-    states.collect::<serde_json::Map<_, _>>().into()
 }
 
 /// Several motions in turn, within [`MEDLEY_CM`].

@@ -82,7 +82,7 @@ pub fn compress(folder: &Path) -> Result<()> {
         import { readFileSync, readdirSync, writeFileSync } from "node:fs";
         import { brotliCompressSync, constants, gzipSync } from "node:zlib";
         const [, folder] = process.argv;
-        for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|ptb|wasm)$/.test(name))) {
+        for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|ptb|toml|wasm)$/.test(name))) {
           const bytes = readFileSync(`${folder}/${name}`);
           // The converter takes seconds at the best quality.
           const [quality, level] = bytes.length < 1 << 19 ? [11, 9] : [9, 6];

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use harness::paths;
 use harness::web::browser::Browser;
-use harness::web::{self, CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, tools};
+use harness::web::{self, CHARACTER, CONVERTER, EXPORT, FACE, MACHINE, OTHERS, PLAYER, tools};
 use serde_json::{Value, json};
 
 use super::{Goal, table};
@@ -53,7 +53,7 @@ pub fn run() -> Result<Vec<Goal>> {
 fn sizes() -> Result<Vec<Goal>> {
     let folder = paths::root().join("target/web");
     let (mut rows, mut sums) = (vec![], vec![]);
-    for names in [&PLAYER[..], &FACE, &CONVERTER, &CHARACTER, &OTHERS, &EXPORT] {
+    for names in [&PLAYER[..], &FACE, &CONVERTER, &CHARACTER, &OTHERS, &EXPORT, &MACHINE] {
         let mut sum = [0; 3];
         for &name in names {
             let bytes = |end: &str| {
@@ -66,7 +66,7 @@ fn sizes() -> Result<Vec<Goal>> {
         sums.push(sum);
     }
     table::print(&["file", "brotli", "gzip", "raw bytes"], &rows);
-    let [player, face, converter, character, others, export] = sums[..] else { return Ok(vec![]) };
+    let [player, face, converter, character, others, export, machine] = sums[..] else { return Ok(vec![]) };
     let bank = std::fs::read(folder.join(BANK)).context(BANK)?.len();
     let scripts = player[0] + face[0] + character[0] + others[0] + export[0];
     let alone = tempfile::tempdir().context("a folder for the decoder")?;
@@ -94,6 +94,8 @@ fn sizes() -> Result<Vec<Goal>> {
         Goal::told("a page with bodies, gzip", format!("{} bytes", player[1])),
         Goal::told("converter, brotli", format!("{} bytes", converter[0])),
         Goal::told("converter, raw", format!("{} bytes", converter[2])),
+        Goal::told("compiler of state machines and its editor, brotli", format!("{} bytes", machine[0])),
+        Goal::told("compiler of state machines and its editor, raw", format!("{} bytes", machine[2])),
     ])
 }
 
