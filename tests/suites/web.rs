@@ -175,6 +175,27 @@ fn a_character_is_steered_as_on_the_host() {
     assert_eq!(states[..4], ["idle", "start", "walk", "run"]);
 }
 
+/// A text with a state more, compiled by the page, is the bank that `pantin machine` makes of it.
+#[test]
+fn the_text_of_a_state_machine_is_edited_in_the_page() {
+    if skipped("the page's state machine") {
+        return;
+    }
+    let text = std::fs::read_to_string(own("character.toml")).unwrap();
+    let dance = "    { to = \"dance\", input = \"dance\" },\n";
+    assert!(text.contains(dance));
+    let edited = text.replace(dance, &format!("{dance}    {{ to = \"cheer\", input = \"cheer\" }},\n"))
+        + "\n[[state]]\nname = \"cheer\"\nclip = \"bow\"\ntransitions = [{ to = \"idle\", released = \"cheer\" }]\n"
+        + "\n[[parameter]]\nname = \"pace\"\nrange = [0, 10]\n";
+    let folder = tempfile::tempdir().unwrap();
+    let [file, bank] = ["edited.toml", "edited.ptb"].map(|name| folder.path().join(name));
+    std::fs::write(&file, &edited).unwrap();
+    let mut tool = Command::new(build::host_tool().unwrap());
+    tool.arg("machine").arg(&file).arg("--bank").arg(own("character.ptb")).arg("-o").arg(&bank).arg("--quiet");
+    assert!(tool.status().unwrap().success());
+    drive("machine", json!({ "text": text, "edited": edited, "bank": bank }));
+}
+
 #[test]
 fn the_modules_stand_whatever_bytes_they_get() {
     if skipped("the player's modules") {

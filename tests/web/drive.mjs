@@ -26,13 +26,18 @@ async function patient(browser, options) {
   return context;
 }
 
-async function opened(browser, options = {}) {
+// The page; with a `policy`, as a server sends it that restricts where its parts come from.
+async function opened(browser, { policy, ...options } = {}) {
   const context = await patient(browser, { viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.troubles = [];
   page.on("pageerror", (error) => page.troubles.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.troubles.push(message.text()));
   await page.addInitScript(HELPERS);
+  if (policy) await page.route(args.site, async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, headers: { ...response.headers(), "content-security-policy": policy } });
+  });
   await page.goto(args.site);
   await page.waitForFunction(() => document.querySelector("#player").playable > 1);
   // Who cannot be seen does not play.
@@ -131,6 +136,91 @@ const cases = {
     await button("Sit, stand").click();
     await is("sit_down");
     return pictures;
+  },
+
+  // The text of the character's state machine, edited: what is right plays at once, what is wrong is named with its line, and the host's compiler makes the same bank.
+  async machine(_, browser) {
+    const policy = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'";
+    const page = await opened(browser, { policy });
+    await page.evaluate(() => {
+      scrollTo(0, 0);
+      window.loads = 0;
+      character.addEventListener("loadstart", () => window.loads++);
+    });
+    const is = (name) => page.waitForFunction((name) => character.state === name && document.querySelector("#graph .lit")?.dataset.state === name, name);
+    const says = (pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("#machine-said").textContent), pattern);
+    const button = (name) => page.locator("#inputs").getByRole("button", { name, exact: true });
+    const parts = () => page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name).filter((name) => /machine|wasm|toml/.test(name)).length);
+    const states = () => page.evaluate(() => character.states.length);
+    const loads = () => page.evaluate(() => window.loads);
+    const text = page.locator("#machine-text");
+    await is("walk");
+    assert.equal(await parts(), 0, "nothing is fetched before it is asked for");
+    await page.locator("#edit summary").click();
+    await says("^16 states, 29 transitions: a table of [0-9]+ bytes. With motions and figure, 5,432 bytes\\.$");
+    assert.ok((await parts()) >= 2);
+    assert.equal(await text.inputValue(), args.text);
+    assert.ok(await text.evaluate((text) => parseFloat(getComputedStyle(text).fontSize) >= 14));
+    assert.deepEqual([await loads(), await page.evaluate(() => character.state)], [0, "walk"], "the same machine goes on");
+    // The keyboard leaves the text.
+    await text.focus();
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "machine-reset");
+
+    // A new state with an input that is held, and a parameter that nothing uses. What was held is held.
+    await text.fill(args.edited);
+    await says("^17 states, 31 transitions: .*, 1 warning\\.$");
+    assert.match(await page.locator("#machine-warnings").textContent(), /^Line \d+, column 8: parameter `pace`: no blend and no transition uses it\.$/);
+    assert.equal(await states(), 17);
+    await is("walk");
+    await button("Walk").click();
+    await is("idle");
+    assert.equal(await button("cheer").getAttribute("aria-pressed"), "false");
+    await button("cheer").click();
+    await is("cheer");
+    assert.equal(await button("Bow").getAttribute("aria-disabled"), "true");
+    await button("cheer").click();
+    await is("idle");
+    await page.locator("#inputs").getByRole("slider", { name: "pace" }).fill("7");
+    const file = async (name) => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name, exact: true }).click()]);
+      return [download.suggestedFilename(), readFileSync(await download.path())];
+    };
+    assert.deepEqual(await file("Save .ptb"), ["character.ptb", readFileSync(args.bank)]);
+    assert.deepEqual(await file("Save text"), ["character.toml", Buffer.from(args.edited)]);
+
+    // What is wrong is named, and the last machine plays.
+    const before = await loads();
+    await text.fill(args.edited.replace('to = "run", input = "fast"', 'to = "nowhere", input = "fast"'));
+    await says("^Line \\d+, column 5: state `walk`: no state `nowhere`; there are .* The figure goes on with the last good text\\.$");
+    assert.deepEqual([await text.getAttribute("aria-invalid"), await loads(), await states()], ["true", before, 17]);
+    await button("cheer").click();
+    await is("cheer");
+    await button("cheer").click();
+    await is("idle");
+    await page.getByRole("button", { name: /^Go to line/ }).click();
+    assert.match(await text.evaluate((text) => (document.activeElement === text ? text.value.slice(text.selectionStart, text.selectionEnd) : "")), /^\{ to = "nowhere", /);
+    await text.fill(`${args.text}\n[[state`);
+    await says("^Line \\d+, column \\d+: unclosed");
+
+    // An input that is gone takes its button along; one that fires becomes one that holds.
+    const less = args.text.replace('    { to = "bow", input = "bow" },\n', "").replace(/\[\[state\]\]\nname = "bow"\n.*\n/, "").replace('name = "wave"\ntransitions = [', 'name = "wave"\ntransitions = [{ to = "idle", released = "wave" }, ');
+    await text.fill(less);
+    await says("^15 states, 28 transitions");
+    assert.equal(await text.getAttribute("aria-invalid"), null);
+    assert.deepEqual([await button("Bow").count(), await button("cheer").count(), await button("Wave").count(), await button("wave").getAttribute("aria-pressed")], [0, 0, 0, "false"]);
+    assert.equal(await page.locator("#inputs label").count(), 0);
+
+    // Back to the page's own text, and that again.
+    await page.getByRole("button", { name: "Reset", exact: true }).click();
+    await says("^16 states, 29 transitions: .* 5,432 bytes\\.$");
+    assert.deepEqual([await text.inputValue(), await states(), await button("Bow").count(), await button("wave").count()], [args.text, 16, 1, 0]);
+    await page.getByRole("button", { name: "Undo reset", exact: true }).click();
+    await says("^15 states");
+    assert.equal(await text.inputValue(), less);
+    await page.getByRole("button", { name: "Reset", exact: true }).click();
+    await says("^16 states");
+    assert.deepEqual(page.troubles, []);
   },
 
   async controls(page) {
@@ -771,6 +861,15 @@ const cases = {
           faults.push(...found.map((fault) => `${width} ${colorScheme} ${what}: ${fault}`));
         };
         await check("page");
+        await one.evaluate(() => (document.querySelector("#edit").open = true));
+        await one.waitForFunction(() => document.querySelector("#machine-said").textContent.startsWith("16 states"));
+        await check("the text of the state machine");
+        if (args.folder) await one.locator("#steer").screenshot({ path: `${args.folder}/machine-${width}-${colorScheme}.png` });
+        await one.locator("#machine-text").fill(`${await one.locator("#machine-text").inputValue()}\n[[state]]\nname = "fly"\n`);
+        await one.waitForFunction(() => document.querySelector("#machine-said").textContent.startsWith("Line "));
+        await check("a wrong text of the state machine");
+        if (args.folder) await one.locator("#steer").screenshot({ path: `${args.folder}/machine-wrong-${width}-${colorScheme}.png` });
+        await one.evaluate(() => (document.querySelector("#edit").open = false));
         await one.evaluate(() => scrollTo(0, document.body.scrollHeight));
         await one.context().grantPermissions([]);
         await one.locator("#microphone").click();
@@ -953,6 +1052,16 @@ const cases = {
     assert.equal(await later(), length);
     await one.evaluate(() => document.querySelector("#face").scrollIntoView());
     await one.waitForFunction(() => document.querySelectorAll("#emotes button").length === 23 && face.readyState === 4);
+    // The text of the state machine and its compiler are kept from the start on.
+    await one.locator("#edit summary").click();
+    await one.waitForFunction(() => document.querySelector("#machine-said").textContent.startsWith("16 states, 29 transitions"));
+    await one.locator("#machine-text").evaluate((text) => {
+      text.value += '\n[[any]]\nto = "bow"\ninput = "greet"\n';
+      text.dispatchEvent(new Event("input"));
+    });
+    await one.waitForFunction(() => document.querySelector("#machine-said").textContent.startsWith("16 states, 30 transitions"));
+    await one.locator("#inputs").getByRole("button", { name: "greet" }).click();
+    await one.waitForFunction(() => document.querySelector("#character").state === "bow");
     assert.equal(asked, 0);
     // Another build: its files are kept in place of the older ones.
     build = "0123456789abcdef";

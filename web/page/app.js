@@ -70,7 +70,11 @@ $("link").onchange = () => show(current);
 // ---- the character
 
 const character = $("character");
-const inputs = [...document.querySelectorAll("#inputs button")];
+const pressed = (button) => button.getAttribute("aria-pressed") === "true";
+const namesOf = ({ dataset }) => (dataset.hold ?? dataset.fire).split(" ");
+// The buttons of inputs that the state machine has, and those that its text adds.
+const inputs = () => [...document.querySelectorAll("#inputs button:not([hidden])")];
+const [go, fast] = inputs();
 
 // The inputs that do something in each state, once they are known.
 let possible = {};
@@ -78,13 +82,9 @@ let possible = {};
 // What a button would do nothing with is greyed, and the line below says why.
 function offered() {
   const known = possible[character.state];
-  const [go, fast] = inputs;
-  const can = (input) => {
-    const { hold: held, fire } = input.dataset;
-    return !known || input.getAttribute("aria-pressed") === "true" || (held ?? fire).split(" ").some((name) => known.includes(name)) || (input === fast && known.includes(go.dataset.hold));
-  };
-  inputs.forEach((input) => input.setAttribute("aria-disabled", !can(input)));
-  const missing = inputs.filter((input) => !can(input)).map((input) => input.textContent.toLowerCase());
+  const can = (input) => !known || pressed(input) || namesOf(input).some((name) => known.includes(name)) || (input === fast && known.includes(go.dataset.hold));
+  inputs().forEach((input) => input.setAttribute("aria-disabled", !can(input)));
+  const missing = inputs().filter((input) => !can(input)).map((input) => input.textContent.toLowerCase());
   const said = missing.length ? `Greyed: the state machine has no way from “${character.state.replaceAll("_", " ")}” to ${missing.length > 4 ? "these" : missing.join(", ")}.` : "";
   if ($("why").textContent !== said) $("why").textContent = said;
 }
@@ -96,52 +96,80 @@ function lit() {
 
 // What a button holds it holds until it is pressed again.
 function hold(input, down) {
-  character.hold(input.dataset.hold, down);
+  const [name] = namesOf(input);
+  if (!character.inputs.includes(name)) return;
+  character.hold(name, down);
   input.setAttribute("aria-pressed", down);
-  const [go, fast] = inputs;
   // To run is to walk fast.
-  if (input === fast && down && go.getAttribute("aria-pressed") === "false") hold(go, true);
-  if (input === go && !down && fast.getAttribute("aria-pressed") === "true") hold(fast, false);
+  if (input === fast && down && !pressed(go)) hold(go, true);
+  if (input === go && !down && pressed(fast)) hold(fast, false);
   offered();
 }
 
-for (const input of inputs) {
-  const { hold: held, fire } = input.dataset;
-  input.onclick = () => {
-    if (!character.inputs.length || input.getAttribute("aria-disabled") === "true") return;
-    if (held) hold(input, input.getAttribute("aria-pressed") === "false");
-    // Each state knows one of them.
-    else fire.split(" ").forEach((name) => character.fire(name));
-  };
+function press(input) {
+  if (!character.inputs.length || input.getAttribute("aria-disabled") === "true") return;
+  if (input.dataset.hold) hold(input, !pressed(input));
+  // Each state knows one of them.
+  else namesOf(input).filter((name) => character.inputs.includes(name)).forEach((name) => character.fire(name));
 }
+$("inputs").onclick = ({ target }) => {
+  const input = target.closest("button");
+  if (input) press(input);
+};
 
 // Keys steer while the figure has the focus, so that they scroll the page elsewhere.
 function key(event) {
-  const input = inputs.find((input) => input.dataset.key === (event.key.length === 1 ? event.key.toLowerCase() : event.key));
+  const input = inputs().find((input) => input.dataset.key === (event.key.length === 1 ? event.key.toLowerCase() : event.key));
   if (!input || event.ctrlKey || event.metaKey || event.altKey || !character.inputs.length) return;
   event.preventDefault();
   event.stopPropagation();
   if (input.dataset.hold) hold(input, event.type === "keydown");
-  else if (event.type === "keydown" && !event.repeat) input.click();
+  else if (event.type === "keydown" && !event.repeat) press(input);
 }
 ["keydown", "keyup"].forEach((type) => character.addEventListener(type, key, true));
-character.addEventListener("blur", () => inputs.filter((input) => input.dataset.hold && character.inputs.length).forEach((input) => hold(input, false)));
+character.addEventListener("blur", () => inputs().filter((input) => input.dataset.hold).forEach((input) => hold(input, false)));
 character.addEventListener("state", lit);
 character.addEventListener("ready", () => {
   $("character-size").textContent = `${character.states.length} states, ${character.clips.length} motions and the figure are ${bytes(character.total)}.`;
-  hold(inputs[0], true);
 });
+// It walks at first.
+character.addEventListener("ready", () => hold(go, true), { once: true });
+
+// The picture of the state machine.
+function draw(svg) {
+  const { documentElement } = new DOMParser().parseFromString(svg, "image/svg+xml");
+  ["width", "height"].forEach((name) => documentElement.removeAttribute(name));
+  $("graph").replaceChildren(document.importNode(documentElement, true));
+  lit();
+}
 
 async function graph() {
   const response = await fetch("clips/character.svg");
-  if (!response.ok) return;
-  const { documentElement } = new DOMParser().parseFromString(await response.text(), "image/svg+xml");
-  ["width", "height"].forEach((name) => documentElement.removeAttribute(name));
-  $("graph").append(document.importNode(documentElement, true));
-  lit();
+  if (response.ok) draw(await response.text());
 }
 graph().catch(() => {});
 fetch("clips/character.json").then((response) => response.json()).then((known) => ((possible = known), offered()), () => {});
+
+// The character goes on with another machine: `known` are the inputs that do something in each state, and what was held is held.
+function steered(known, svg) {
+  possible = known;
+  inputs().filter(pressed).forEach((input) => hold(input, true));
+  draw(svg);
+}
+
+// The text of the state machine, once it is opened. What failed is tried again when it is opened again.
+async function edit() {
+  if (!$("edit").open) return;
+  $("edit").ontoggle = null;
+  try {
+    const machine = await import("./machine.js");
+    await machine.edit({ character, steered, bytes, offer });
+  } catch (error) {
+    $("machine-said").textContent = `The state machine cannot be edited: ${error.message}.`;
+    $("edit").ontoggle = edit;
+  }
+}
+$("edit").ontoggle = edit;
 
 // ---- the face, once it comes near the screen
 
@@ -199,10 +227,7 @@ async function saved(button, ending, make) {
   button.disabled = true;
   try {
     const content = await make((part) => (button.textContent = `${Math.floor(100 * part)} %`));
-    const link = document.createElement("a");
-    save(link, `${current?.name.replace(/\.pt[nb]$/i, "") ?? "figure"}.${ending}`, content, content.type);
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    offer(`${current?.name.replace(/\.pt[nb]$/i, "") ?? "figure"}.${ending}`, content, content.type);
     trouble("");
   } catch (error) {
     trouble(`Nothing was saved: ${error.message}.`);
@@ -472,6 +497,14 @@ $("try").onclick = async () => {
   take([new File([await response.arrayBuffer()], "walk.bvh")]);
 };
 
+// Lets the browser save a file.
+function offer(name, content, type) {
+  const link = document.createElement("a");
+  save(link, name, content, type);
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
 function save(link, name, content, type) {
   if (link.href) URL.revokeObjectURL(link.href);
   link.href = URL.createObjectURL(new Blob([content], { type }));
@@ -523,10 +556,16 @@ converted.addEventListener("change", () => original.turn(converted.orbit - origi
 
 $("cancel").onclick = () => (done(), trouble("Cancelled."));
 $("files").onchange = (event) => (take(event.target.files), (event.target.value = ""));
-const over = (on) => (event) => (event.preventDefault(), $("drop").classList.toggle("over", on));
+const over = (on) => (event) => {
+  // Text is moved within the page's own field.
+  if (event.target === $("machine-text") && !event.dataTransfer.types.includes("Files")) return false;
+  event.preventDefault();
+  $("drop").classList.toggle("over", on);
+  return true;
+};
 addEventListener("dragover", over(true));
 addEventListener("dragleave", over(false));
-addEventListener("drop", (event) => (over(false)(event), take(event.dataTransfer.files)));
+addEventListener("drop", (event) => over(false)(event) && take(event.dataTransfer.files));
 
 // Without a network the page is shown as it was last. Where there is no service worker, as in a file or a private window, it needs the network.
 if (location.protocol.startsWith("http")) navigator.serviceWorker?.register(new URL("offline.js", import.meta.url)).catch(() => {});
