@@ -7,6 +7,8 @@ use std::process::Output;
 
 /// Most CPU time of a command that refuses: it does not depend on what else the machine does.
 const SOON: f64 = 1.0;
+/// Most steps of moving channels by which segments are counted: about half a second.
+const STEPS: u64 = 1 << 26;
 /// Address space of the commands in kB. What a process has in memory is less.
 const MOST_KB: u64 = 1 << 20;
 
@@ -424,12 +426,13 @@ fn a_clip_that_lasts_for_ever_is_described_soon() {
         let clip = folder.get("a.ptn");
         assert!(pantin::Clip::new_checked(&with_frames(&clip, 3)).is_ok_and(|clip| clip.frames() == 3));
         folder.put("long.ptn", with_frames(&clip, 1 << 24));
-        let (output, time) = limited(&folder, &["info", "long.ptn", "--json"]);
+        let (output, _) = limited(&folder, &["info", "long.ptn", "--json"]);
         assert!(output.status.success(), "{name}: {}", err(&output));
-        assert!(time.is_none_or(|time| time < SOON), "{name}: {time:?} s");
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        // What takes the time is a step of each moving channel in each frame that is counted: half a second, which depends on what else the machine does.
         let counted = report["segments_counted_in_frames"].as_u64().unwrap();
-        assert!((100..1 << 24).contains(&counted), "{name}: {report}");
+        let steps = counted * (report["moving"].as_u64().unwrap() + 1);
+        assert!(counted >= 100 && steps <= STEPS, "{name}: {report}");
         assert!(report["segments"].as_u64().unwrap() > 100 * (1 << 24) / 96 / 2, "{name}: {report}");
     }
 }
