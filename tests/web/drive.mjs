@@ -429,17 +429,49 @@ const cases = {
       }, look);
       assert.ok(differences.every(([most, lit]) => most <= 24 && lit > 100), `${look}: ${differences.join("; ")}`);
     }
+    // A video: as long as its pictures last, and each of them where one seeks it, beyond the first picture that stands alone.
+    await page.evaluate(() => player.range(0, 1.25));
     const video = await page.evaluate(async () => {
       player.look = "lines";
       const parts = [];
-      const blob = await player.record({ type: "video/webm", progress: (part) => parts.push(part) });
+      const blob = await player.record({ type: "video/webm", fps: 20, progress: (part) => parts.push(part) });
       const video = Object.assign(document.createElement("video"), { src: URL.createObjectURL(blob), muted: true });
-      await new Promise((done, failed) => Object.assign(video, { onloadeddata: done, onerror: () => failed(new Error("no video")) }));
+      await new Promise((done, failed) => Object.assign(video, { onloadeddata: done, onerror: () => failed(new Error(`no video: ${video.error.message}`)) }));
+      const pixels = (image) => {
+        const context = Object.assign(document.createElement("canvas"), { width: video.videoWidth, height: video.videoHeight }).getContext("2d");
+        context.drawImage(image, 0, 0, video.videoWidth, video.videoHeight);
+        return context.getImageData(0, 0, video.videoWidth, video.videoHeight).data;
+      };
+      const [shown, expected] = [[], []];
+      for (let number = 0; number < 25; number++) {
+        video.currentTime = (number + 0.5) / 20;
+        await new Promise((done) => (video.onseeked = done));
+        shown.push(pixels(video));
+        player.currentTime = number / 20;
+        expected.push(pixels(await createImageBitmap(await player.picture())));
+      }
+      const apart = (one, other) => one.reduce((all, value, at) => all + Math.abs(value - other[at]), 0) / one.length;
+      const table = shown.map((image) => expected.map((other) => apart(image, other)));
+      const nearest = table.map((row) => row.indexOf(Math.min(...row)));
+      const most = Math.max(...table.map((row, number) => row[number]));
       const [type, ...failures] = [blob.type];
       for (const options of [{ type: "video/none" }, { signal: AbortSignal.abort() }]) failures.push(await player.record(options).then(() => "", (error) => error.name));
-      return { width: video.videoWidth, parts: [parts.length, parts.at(-1)], type, failures };
+      return { facts: { width: video.videoWidth, seconds: video.duration, parts: [parts.length, parts.at(-1)], type, failures }, nearest, most };
     });
-    assert.deepEqual(video, { width: Math.ceil(width / 2) * 2, parts: [15, 1], type: "video/webm", failures: ["TypeError", "AbortError"] });
+    assert.deepEqual(video.facts, { width: Math.ceil(width / 2) * 2, seconds: 1.25, parts: [25, 1], type: "video/webm", failures: ["TypeError", "AbortError"] });
+    assert.deepEqual(video.nearest, [...Array(25).keys()]);
+    assert.ok(video.most < 1.2, `a video's pictures are apart by ${video.most} of 255`);
+    // Where there is no encoder, a recorder makes one, whatever else the machine does.
+    const still = await page.evaluate(async () => {
+      const encoder = globalThis.VideoEncoder;
+      delete globalThis.VideoEncoder;
+      const blob = await player.record({ type: "video/webm", to: 0.5 });
+      globalThis.VideoEncoder = encoder;
+      const video = Object.assign(document.createElement("video"), { src: URL.createObjectURL(blob), muted: true });
+      await new Promise((done, failed) => Object.assign(video, { onloadeddata: done, onerror: () => failed(new Error(`no video of a recorder: ${video.error.message}`)) }));
+      return video.videoWidth;
+    });
+    assert.equal(still, Math.ceil(width / 2) * 2);
     // A page in one file shows its clip without another request: of segments, and of keys with a face.
     for (const name of ["walk", "greet"]) {
       const alone = await page.context().newPage();

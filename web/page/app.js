@@ -225,7 +225,7 @@ $("copy-npm").onclick = () => copy($("copy-npm"), $("npm").textContent);
 // ---- pictures of what plays
 
 const VIDEO = "video/webm";
-$("save-video").hidden = !globalThis.MediaRecorder?.isTypeSupported(VIDEO);
+$("save-video").hidden = !globalThis.VideoEncoder && !globalThis.MediaRecorder?.isTypeSupported(VIDEO);
 
 async function saved(button, ending, make) {
   const words = button.textContent;

@@ -1,5 +1,7 @@
 // What <pantin-player> shows as files: a picture, an animated GIF, or a video. The element loads this script once something is to be saved.
 
+import { webm } from "./webm.js";
+
 // Widths of a GIF, and of the display's picture, unless another one is asked for.
 const [GIF_WIDTH, DISPLAY_WIDTH] = [480, 512];
 // What the display's greys are multiplied by, as on the page.
@@ -7,6 +9,10 @@ const GLOW = "#bff1ff";
 // GIF times are hundredths of a second, and viewers slow down what is shorter than two.
 const MOST_FPS = 50;
 const [PAPER, SAME, COLORS] = [0, 255, 254];
+// Bits a second of a video, seconds from one picture that stands alone to the next, and pictures that may wait for the encoder.
+const [BITRATE, KEY_SECONDS, MOST_QUEUED] = [5e6, 1, 4];
+// How long a recorder of video is waited for: milliseconds between two questions, and questions before it gives anything.
+const [ROUND, MOST_ROUNDS] = [100, 300];
 // Pictures that the colors of a GIF are taken from.
 const SAMPLES = 16;
 
@@ -47,7 +53,6 @@ export async function picture(player, paper, { width, type = "image/png" } = {})
 export async function record(player, paper, options = {}) {
   const { type = "image/gif", width, seconds, progress, signal } = options;
   const isGif = type === "image/gif";
-  if (!isGif && !globalThis.MediaRecorder?.isTypeSupported(type)) throw new TypeError(`this browser cannot record ${type}`);
   const { frames, playable, frame, paused, states } = player;
   if (!frames || playable < frames) throw new Error("the clip has not arrived yet");
   const fps = Math.max(1, Math.min(MOST_FPS, options.fps ?? (isGif ? 25 : 30)));
@@ -55,6 +60,8 @@ export async function record(player, paper, options = {}) {
   const to = states.length ? from + (seconds ?? 3) : Math.min(options.to ?? player.to, Math.max(player.duration, 1 / fps));
   const count = Math.max(1, Math.round((to - from) * fps));
   const drawn = easel(player, paper, width ?? (isGif && player.look !== "oled" ? Math.min(GIF_WIDTH, player.canvas.width) : undefined), !isGif);
+  const config = isGif ? null : await encoding(drawn.canvas, fps, type);
+  if (!isGif && !config && !globalThis.MediaRecorder?.isTypeSupported(type)) throw new TypeError(`this browser cannot record ${type}`);
   // Of a character, each picture is a moment later.
   const show = (number) => {
     if (states.length) player.advance(number && 1 / fps);
@@ -74,21 +81,83 @@ export async function record(player, paper, options = {}) {
   player.pause();
   try {
     signal?.throwIfAborted();
-    return await (isGif ? gif(drawn, show, count, fps, done, !states.length) : video(drawn, show, count, fps, type, done));
+    if (isGif) return await gif(drawn, show, count, fps, done, !states.length);
+    return await (config ? encoded : recorded)(drawn, show, count, fps, type, done, config);
   } finally {
     if (!states.length) player.seek(frame);
     if (!paused) player.play();
   }
 }
 
-// Recorders take the time that the pictures take.
-async function video({ canvas }, show, count, fps, type, done) {
+// How an encoder is to compress, or null where there is none: outside secure contexts, and of other types than WebM.
+async function encoding({ width, height }, fps, type) {
+  const config = { codec: "vp8", width, height, bitrate: BITRATE, framerate: fps };
+  const isKnown = type === "video/webm" && (await globalThis.VideoEncoder?.isConfigSupported(config).catch(() => null))?.supported;
+  return isKnown ? config : null;
+}
+
+// The colors that players suppose VP8 to hold, as nothing in the file tells them otherwise: of ITU-R BT.601, black at 16 and white at 235.
+const COLOR_SPACE = { primaries: "smpte170m", transfer: "smpte170m", matrix: "smpte170m", fullRange: false };
+
+// A picture of an even size in that space: a byte of brightness for each pixel, then one of blue and one of red for each four. Browsers convert canvases differently.
+function i420(pixels, width, height) {
+  const out = new Uint8Array((width * height * 3) / 2);
+  const [blue, red] = [width * height, (width * height * 5) / 4];
+  for (let at = 0; at < width * height; at++) out[at] = 16.5 + (65.738 * pixels[4 * at] + 129.057 * pixels[4 * at + 1] + 25.064 * pixels[4 * at + 2]) / 256;
+  for (let y = 0, at = 0; y < height; y += 2) {
+    for (let x = 0; x < width; x += 2, at++) {
+      const corner = 4 * (y * width + x);
+      const [r, g, b] = [0, 1, 2].map((channel) => [0, 4, 4 * width, 4 * width + 4].reduce((all, place) => all + pixels[corner + channel + place], 0) / 4);
+      out[blue + at] = 128.5 + (-37.945 * r - 74.494 * g + 112.439 * b) / 256;
+      out[red + at] = 128.5 + (112.439 * r - 94.154 * g - 18.285 * b) / 256;
+    }
+  }
+  return out;
+}
+
+// An encoder gets each picture in its time, and the page waits for it.
+async function encoded({ canvas: { width, height }, pixels }, show, count, fps, type, done, config) {
+  const pictures = [];
+  let failure;
+  const encoder = new VideoEncoder({
+    output(chunk) {
+      const data = new Uint8Array(chunk.byteLength);
+      chunk.copyTo(data);
+      pictures.push({ data, isKey: chunk.type === "key", time: Math.round(chunk.timestamp / 1000) });
+    },
+    error: (error) => (failure = error),
+  });
+  encoder.configure(config);
+  try {
+    for (let number = 0; number < count; number++) {
+      show(number);
+      const timing = { timestamp: Math.round((number * 1e6) / fps), duration: Math.round(1e6 / fps) };
+      const frame = new VideoFrame(i420(pixels(), width, height), { ...timing, format: "I420", codedWidth: width, codedHeight: height, colorSpace: COLOR_SPACE });
+      encoder.encode(frame, { keyFrame: number % Math.round(KEY_SECONDS * fps) === 0 });
+      frame.close();
+      while (encoder.encodeQueueSize > MOST_QUEUED && !failure) await new Promise((go) => setTimeout(go, 5));
+      if (failure) throw failure;
+      await done(number);
+    }
+    await encoder.flush();
+  } finally {
+    if (encoder.state !== "closed") encoder.close();
+  }
+  return new Blob(webm(pictures, width, height, (1000 * count) / fps), { type });
+}
+
+// Recorders take the time that the pictures take, and drop what they have not encoded once they are stopped: on a busy machine that can be all.
+async function recorded({ canvas }, show, count, fps, type, done) {
   const stream = canvas.captureStream(0);
   // Firefox asks the stream for pictures, other browsers its track.
   const source = stream.requestFrame ? stream : stream.getVideoTracks()[0];
-  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 5e6 });
+  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITRATE });
   const parts = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
+  let given;
+  recorder.ondataavailable = ({ data }) => {
+    if (data.size) parts.push(data);
+    given?.(data.size);
+  };
   const ended = new Promise((stop, fail) => Object.assign(recorder, { onstop: stop, onerror: ({ error }) => fail(error) }));
   show(0);
   recorder.start();
@@ -99,6 +168,14 @@ async function video({ canvas }, show, count, fps, type, done) {
       source.requestFrame();
       await done(number);
       await new Promise((go) => setTimeout(go, begun + ((number + 1) * 1000) / fps - performance.now()));
+    }
+    // What is still being encoded: until nothing more comes. An encoder may wait for a picture more before it gives the first.
+    for (let round = 0, size = 1; size || (!parts.length && round < MOST_ROUNDS); round++) {
+      const answered = new Promise((go) => (given = go));
+      await new Promise((go) => setTimeout(go, ROUND));
+      if (!parts.length) source.requestFrame();
+      recorder.requestData();
+      size = await answered;
     }
   } finally {
     recorder.stop();

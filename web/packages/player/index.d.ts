@@ -88,7 +88,7 @@ export interface PictureOptions {
 
 /** How a motion is saved. */
 export interface RecordOptions {
-  /** image/gif by default, or a video type that the browser's MediaRecorder knows, such as video/webm. */
+  /** image/gif by default, video/webm, or another video type that the browser's MediaRecorder knows. */
   type?: string;
   /** Pixels; by default the canvas's width, of a GIF at most 480, or 512 of the display. */
   width?: number;

@@ -15,7 +15,7 @@ pub const SCRIPTS: [(&str, &[&str]); 15] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
     ("pantin-stream.js", &["player/stream.js"]),
-    ("pantin-export.js", &["player/export.js"]),
+    ("pantin-export.js", &["player/webm.js", "player/export.js"]),
     ("pantin-oled.js", &["player/oled.js"]),
     ("pantin-solid.js", &["player/solid.js"]),
     ("pantin-looks.js", &["player/looks.js"]),
