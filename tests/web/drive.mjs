@@ -418,6 +418,7 @@ const cases = {
           player.currentTime = frameIndex / 10;
           const bitmap = await createImageBitmap(await player.picture(size));
           const [shown, expected] = [image, bitmap].map((one) => pixels(one, bitmap.width, bitmap.height));
+          image.close();
           let [most, lit] = [0, 0];
           for (let at = 0; at < shown.length; at++) {
             most = Math.max(most, Math.abs(shown[at] - expected[at]));
