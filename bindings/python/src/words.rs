@@ -76,6 +76,7 @@ fn arguments(remedy: Remedy) -> &'static str {
         Remedy::ShareBody => "body=",
         Remedy::WriteSegments => "segments=True",
         Remedy::AllowSegments => "keys=False",
+        Remedy::LeaveOutJoints => "drop=, body=",
         _ => "",
     }
 }

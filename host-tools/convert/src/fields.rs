@@ -85,6 +85,7 @@ impl Remedy {
             Remedy::ShareBody => "share-body",
             Remedy::WriteSegments => "write-segments",
             Remedy::AllowSegments => "allow-segments",
+            Remedy::LeaveOutJoints => "leave-out-joints",
         }
     }
 }

@@ -171,6 +171,8 @@ pub enum Remedy {
     WriteSegments,
     /// Allow segments where a motion has no key clip.
     AllowSegments,
+    /// Convert fewer joints.
+    LeaveOutJoints,
 }
 
 impl Remedy {
@@ -199,6 +201,7 @@ impl Remedy {
             Remedy::ShareBody => "put all of the motions on the same body",
             Remedy::WriteSegments => "write segments for players without feature `keys`",
             Remedy::AllowSegments => "allow segments",
+            Remedy::LeaveOutJoints => "leave out joints",
         }
     }
 }

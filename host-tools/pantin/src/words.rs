@@ -82,6 +82,7 @@ pub fn advice(remedy: Remedy) -> &'static str {
         }
         Remedy::WriteSegments => "--segments writes a clip for players without feature `keys`",
         Remedy::AllowSegments => "without --keys it gets segments",
+        Remedy::LeaveOutJoints => "--drop PATTERN leaves joints out, --body FILE puts the motion on another figure",
         other => other.text(),
     }
 }

@@ -1,7 +1,9 @@
 //! The rig's bytes.
 
 use super::varint;
+use crate::error::{Error, require};
 use crate::motion::{Joint, Kind, Rig, Scalar};
+use crate::note::Remedy;
 use anyhow::{Result, bail, ensure};
 use pantin::codec::{crc, layout};
 
@@ -38,7 +40,8 @@ pub fn scalar_exponent(full_scale: f64) -> i8 {
 /// The bytes of `rig` with their CRC.
 pub fn encode(rig: &Rig) -> Result<Vec<u8>> {
     ensure!(rig.joints.len() <= layout::MAX_JOINTS, "{} joints; a rig holds at most {}", rig.joints.len(), layout::MAX_JOINTS);
-    ensure!(rig.channels() <= layout::MAX_CHANNELS, "{} channels; a rig holds at most {}", rig.channels(), layout::MAX_CHANNELS);
+    let too_many = || Error::source(format!("{} channels; a rig holds at most {}", rig.channels(), layout::MAX_CHANNELS));
+    require!(rig.channels() <= layout::MAX_CHANNELS, too_many().remedy(Remedy::LeaveOutJoints));
     let micro = (rig.cm_per_unit * 1e6).round();
     ensure!((1.0..4e9).contains(&micro), "a unit of {} cm is outside 0.000001 .. 4000 cm", rig.cm_per_unit);
     let exponent = length_exponent(rig);

@@ -6,7 +6,7 @@ use crate::memory::Memory;
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar, Up};
 use crate::note::{Note, NoteKind};
 use anyhow::{Result, ensure};
-use pantin::codec::layout::{MAX_CHANNELS, MAX_FRAMES, MAX_JOINTS};
+use pantin::codec::layout::{MAX_FRAMES, MAX_JOINTS};
 
 /// Places that waver by less than this part of the greatest one are constant: programs compute them in f32.
 const STANDS: f64 = 2e-7;
@@ -81,7 +81,6 @@ impl Arrays {
         values.extend(of_scalars);
         let mut rig = Rig { joints, scalars, cm_per_unit: self.cm_per_unit, up: self.up };
         helpers::mark(&mut rig);
-        ensure!(rig.channels() <= MAX_CHANNELS, "{} channels; a rig holds at most {MAX_CHANNELS}", rig.channels());
         let keys = vec![None; values.len()];
         let mut motion = Motion {
             rig,

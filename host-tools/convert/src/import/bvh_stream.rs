@@ -7,11 +7,10 @@
 use super::bvh::figure;
 use super::replaced;
 use super::text::{Words, number_in};
-use crate::error::{Error, require};
+use crate::error::Error;
 use crate::motion::Rig;
 use crate::note::Note;
 use anyhow::{Result, anyhow};
-use pantin::codec::layout::MAX_CHANNELS;
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a header: 1023 joints with long names and offsets take a quarter of it.
@@ -231,7 +230,6 @@ fn head(words: &mut Words) -> Result<Head> {
     if channels == 0 {
         return Err(words.error_at(line, "no joint has CHANNELS, so nothing can move"));
     }
-    require!(channels <= MAX_CHANNELS, Error::source(format!("{channels} channels; a rig holds at most {MAX_CHANNELS}")));
     notes.extend(replaced(&rig, &[]));
     Ok(Head { rig, frame_time, notes, stated, line })
 }

@@ -59,7 +59,6 @@ pub use format::{FORMATS, Format};
 pub use gltf::mesh;
 pub use livelink::live_link_name;
 pub use options::ImportOptions;
-use pantin::codec::layout::MAX_CHANNELS;
 pub(crate) use request::Request;
 use std::path::{Path, PathBuf};
 
@@ -132,10 +131,6 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
     }
     notes.extend(replaced(&motion.rig, &motion.events));
     let channels = motion.rig.channels();
-    require!(
-        channels <= MAX_CHANNELS,
-        Error::source(format!("{}: {channels} channels; a rig holds at most {MAX_CHANNELS}", place()))
-    );
     if !format.has_rows {
         request.memory.check(motion.frames, channels).with_context(place)?;
     }

@@ -53,6 +53,21 @@ fn object(output: &Output) -> Value {
     value
 }
 
+/// What counts is what the clip holds: figures of modelling programs have more channels than that.
+#[test]
+fn a_figure_with_too_many_channels_converts_once_joints_are_left_out() {
+    let folder = Folder::new();
+    let six = "OFFSET 0 10 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n";
+    let joint = |name: &str| format!("JOINT {name}\n{{\n{six}End Site\n{{\nOFFSET 0 1 0\n}}\n}}\n");
+    let joints: String = (0..170).map(|index| joint(&format!("hair{index}"))).collect();
+    let row = |frame: usize| (0..6 * 171).map(|channel| format!("{} ", (frame * channel) % 7)).collect::<String>();
+    let rows: String = (0..4).map(|frame| row(frame) + "\n").collect();
+    folder.put("many.bvh", &format!("HIERARCHY\nROOT hips\n{{\n{six}{joints}}}\nMOTION\nFrames: 4\nFrame Time: 0.05\n{rows}"));
+    let said = folder.refused(&["convert", "many.bvh", "-o", "many.ptn"]);
+    assert!(said.contains("1026 channels; a rig holds at most 1023; --drop PATTERN leaves joints out"), "{said}");
+    folder.done(&["convert", "many.bvh", "--drop", "hair7*", "-o", "few.ptn"]);
+}
+
 #[test]
 fn odd_times_are_refused_without_a_panic() {
     let folder = Folder::new();
