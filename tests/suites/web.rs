@@ -540,6 +540,8 @@ fn a_dropped_motion_is_converted_shown_and_saved() {
     assert!(parts.len() > 3 && parts.is_sorted(), "progress {parts:?}");
     let glb = folder.path().join("our-walk.glb");
     dropped(&[&glb], json!({ "effort": "fast" })).is_good(&glb, None);
+    let leg = paths::root().join("host-tools/pantin/tests/data/leg.fbx");
+    dropped(&[&leg], json!({ "effort": "fast" })).is_good(&leg, None);
     let table = folder.path().join("servos.csv");
     let row = |frame: usize| format!("{:.4},{:.4}\n", (frame as f64 / 9.0).sin(), (frame as f64 / 23.0).cos());
     std::fs::write(&table, format!("pan,tilt\n{}", (0..120).map(row).collect::<String>())).unwrap();

@@ -279,26 +279,46 @@ static void turn_between(const int32_t *from_a, const int32_t *from_b, const int
     then(from, r, r);
 }
 
-/* The axis about which a knee bends; a straight one bends as it did, or else across the way to its target. Returns 1 if it is bent. */
-static int knee_axis(pantin_foot_state *s, located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
+/* Directions of thigh and shin. */
+static void bones_of(const pantin_foot *f, const located *at, int32_t *thigh, int32_t *shin) {
+    subtract(at[2].place, at[1].place, thigh);
+    along_bone(thigh, f->upper);
+    subtract(at[3].place, at[2].place, shin);
+    along_bone(shin, f->lower);
+}
+
+/* The sine of the least bend that shows its axis, 2 degrees. */
+enum { LEAST_SINE = ONE / 28 };
+
+/* Remembers how a leg bends in a pose in which it bends as it should: not in one of a transition. At least 2 degrees tell it, and half of what was seen:
+   nearly straight legs bend to any side. */
+static void learn(pantin_foot *f, const located *at) {
+    pantin_foot_state *s = &f->state;
+    int32_t thigh[3], shin[3], axis[3], own[3], back[3][3], sine, seen = s->bent ? s->most : 0;
+    bones_of(f, at, thigh, shin);
+    pantin_figure_cross(thigh, shin, axis);
+    if (!pantin_figure_aim_along(axis, &sine) || sine <= most(seen / 2, LEAST_SINE)) return;
+    memcpy(back, at[2].rotation, sizeof back);
+    transpose(back);
+    pantin_figure_apply(back, axis, own);
+    if (s->bent && sine <= seen && pantin_figure_dot(own, s->hinge) < 0) return;
+    memcpy(s->hinge, own, sizeof own);
+    s->most = (int32_t)most(seen, sine);
+    s->bent = 1;
+}
+
+/* The axis about which a knee bends; one that is straight or bent the other way bends as it did, or else across the way to its target. Returns 1 if it is bent. */
+static int knee_axis(const pantin_foot_state *s, const located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
     static const int32_t aside[3] = {32768, 0, 0};
-    int32_t back[3][3], known[3], sine;
+    int32_t known[3], sine;
     uint8_t shows;
     pantin_figure_cross(thigh, shin, axis);
-    /* At least 2 degrees show it; but not one that is stretched beyond that: bent the other way, and less than it was seen bent. */
-    shows = pantin_figure_aim_along(axis, &sine) && sine > ONE / 28;
+    shows = pantin_figure_aim_along(axis, &sine) && sine > LEAST_SINE;
     if (s->bent) {
         pantin_figure_apply(knee->rotation, s->hinge, known);
-        if (shows && sine <= s->most) shows = pantin_figure_dot(axis, known) >= 0;
+        if (shows) shows = pantin_figure_dot(axis, known) >= 0;
     }
-    if (shows) {
-        if (!s->bent || sine > s->most) s->most = sine;
-        memcpy(back, knee->rotation, sizeof back);
-        transpose(back);
-        pantin_figure_apply(back, axis, s->hinge);
-        s->bent = 1;
-        return 1;
-    }
+    if (shows) return 1;
     if (s->bent) {
         memcpy(axis, known, sizeof known);
         return 0;
@@ -356,10 +376,7 @@ static void solve(pantin_foot *f, located *at, int32_t *pose, const int32_t *tar
     }
     subtract(target, at[1].place, way);
     if (near || !pantin_figure_aim_along(way, &distance)) return;
-    subtract(at[2].place, at[1].place, old.thigh);
-    along_bone(old.thigh, f->upper);
-    subtract(at[3].place, at[2].place, old.shin);
-    along_bone(old.shin, f->lower);
+    bones_of(f, at, old.thigh, old.shin);
     bent = (uint8_t)knee_axis(&f->state, &at[2], old.thigh, old.shin, way, axis);
     if (!reach(f, way, distance, axis, &next)) return;
     memcpy(squares[0], axis, sizeof axis);
@@ -428,7 +445,8 @@ static void release(pantin_foot *f, int16_t shift, int64_t far) {
 
 static int32_t left_height(const pantin_foot_state *s) {
     int32_t t = part_of(s->since_us[0], s->step_us), up = s->doing == RELEASED ? (t * (ONE - t)) >> 15 : 0;
-    /* 4 t (1 - t), in 2^-13 of a lift. */
+    /* The square of 4 t (1 - t), in 2^-13 of a lift: from rest to rest. */
+    up = (up * up) >> 13;
     return sum(ease_at(&s->rise, part_of(s->since_us[1], RELEASE_US)), (int32_t)(uint32_t)(uint64_t)(((int64_t)s->lift * up) >> 13));
 }
 
@@ -578,6 +596,9 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
     leg->is_wanted = 0;
     if (contact == NO_POINT && s->doing == FREE) {
         s->before = NO_POINT;
+        if (!calm || s->bent) return;
+        places_of(p->foot, p->pose, p->shift, leg->at);
+        learn(p->foot, leg->at);
         return;
     }
     places_of(p->foot, p->pose, p->shift, leg->at);
@@ -614,6 +635,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         point_with_left(s, at, s->at);
     }
     want(p, leg);
+    if (calm) learn(p->foot, leg->at);
     if (s->doing == LOCKED && leg->is_wanted && overreaches(p->foot, leg)) {
         come_to_rest(s);
         let_go(p->foot, p->shift);
@@ -768,11 +790,12 @@ static void enter(pantin_character *c, const standing *now, const uint8_t *conta
         wanted_leg leg;
         points[i] = contacts[i] != NO_POINT ? contacts[i] : locked ? f->feet[i].state.point : (uint8_t)NO_POINT;
         stays[i] = (uint8_t)(contacts[i] != NO_POINT && locked);
+        places_of(p.foot, a->track.player.pose, p.shift, leg.at);
+        learn(p.foot, leg.at);
         if (points[i] == NO_POINT) continue;
         place_of(&p, points[i], anchors[i]);
         p.pose = a->track.player.pose;
         p.stand = &end;
-        places_of(p.foot, p.pose, p.shift, leg.at);
         world_of(&p, &leg, points[i], ways[i]);
         wide_subtract(ways[i], anchors[i], ways[i]);
     }

@@ -50,6 +50,9 @@ pub struct Limb<'a> {
     hinge: Option<(Vector, i32)>,
 }
 
+/// The sine of the least bend that shows its axis, 2 degrees.
+const LEAST_SINE: i32 = ONE / 28;
+
 impl<'a> Limb<'a> {
     /// The limb that ends in a joint, by its name: its parent and its parent's parent bend. `groups` are those of the poses:
     /// [`crate::Animator::groups`]. [`Error::ChainTooShort`] for a joint with fewer than two above it, or for bones without length.
@@ -116,6 +119,7 @@ impl<'a> Limb<'a> {
 
     pub(crate) fn solve(&mut self, pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {
         let places = self.places(pose);
+        self.learn(&places);
         self.solve_from(&places, pose, target, pole)
     }
 
@@ -154,6 +158,32 @@ impl<'a> Limb<'a> {
         far(target) > (own + greatest / 32).max(greatest - greatest / 64)
     }
 
+    /// Directions of the two bones.
+    fn bones(&self, [_, hip, knee, ankle]: &[Joint; 4]) -> [Vector; 2] {
+        [unit(sub(knee.place, hip.place), self.upper), unit(sub(ankle.place, knee.place), self.lower)]
+    }
+
+    /// Whether it is not known how the limb bends.
+    pub(crate) fn never_bent(&self) -> bool {
+        self.hinge.is_none()
+    }
+
+    /// Remembers how the limb bends in a pose in which it bends as it should: not in one of a transition. At least 2 degrees tell it, and half of what
+    /// was seen: nearly straight limbs bend to any side.
+    pub(crate) fn learn(&mut self, places: &[Joint; 4]) {
+        let [_, _, knee, _] = places;
+        let [u, l] = self.bones(places);
+        let Some((axis, sine)) = direction(cross(u, l)) else { return };
+        let most = self.hinge.map_or(0, |(_, most)| most);
+        if sine > (most / 2).max(LEAST_SINE) {
+            let own = pantin_math::vector::transposed(&knee.rotation).apply(axis);
+            let is_other = self.hinge.is_some_and(|(known, _)| dot(own, known) < 0);
+            if !is_other || sine > most {
+                self.hinge = Some((own, most.max(sine)));
+            }
+        }
+    }
+
     /// [`Limb::reach`] in figure units, where [`Limb::places`] are known.
     #[inline(never)]
     pub(crate) fn solve_from(&mut self, places: &[Joint; 4], pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {
@@ -166,18 +196,13 @@ impl<'a> Limb<'a> {
             return Reach { error: 0, within: true };
         }
         let Some((e, distance)) = direction(sub(target, hip.place)) else { return failed };
-        // The lengths are known: a product in place of a root.
-        let unit = |v: Vector, (length, inverse): (i32, i32)| v.map(|x| (x.max(-length).min(length) * inverse) >> 14);
-        let u = unit(sub(knee.place, hip.place), self.upper);
-        let l = unit(sub(ankle.place, knee.place), self.lower);
-        // The axis of the bend: at least 2 degrees tell it, and are remembered for a straight limb, and for one that is stretched beyond that, as in
-        // transitions: bent the other way, and less than it was seen bent.
-        let known = self.hinge.map(|(hinge, most)| (knee.rotation.apply(hinge), most));
-        let bent = direction(cross(u, l))
-            .filter(|(axis, sine)| *sine > ONE / 28 && known.is_none_or(|(known, most)| *sine > most || dot(*axis, known) >= 0));
-        let sine = bent.map_or(0, |(_, sine)| sine);
+        let [u, l] = self.bones(places);
+        // What was seen is remembered for a straight limb, and for one that is bent the other way, as in transitions.
+        let known = self.hinge.map(|(hinge, _)| knee.rotation.apply(hinge));
+        let bent =
+            direction(cross(u, l)).filter(|(axis, sine)| *sine > LEAST_SINE && known.is_none_or(|known| dot(*axis, known) >= 0));
         let bent = bent.map(|(axis, _)| axis);
-        let own = bent.or(known.map(|(axis, _)| axis));
+        let own = bent.or(known);
         let axis = match (own, pole) {
             (Some(axis), _) => axis,
             // Never bent: the pole, or any direction across.
@@ -190,10 +215,6 @@ impl<'a> Limb<'a> {
                 None => [0, 0, ONE],
             },
         };
-        if bent.is_some() {
-            let most = known.map_or(sine, |(_, most)| sine.max(most));
-            self.hinge = Some((pantin_math::vector::transposed(&knee.rotation).apply(axis), most));
-        }
         let reached = distance.max(self.least).min(self.greatest);
         let Some((n, _)) = direction(match pole {
             Some(pole) => match direction(pole) {
@@ -233,4 +254,9 @@ impl<'a> Limb<'a> {
         }
         Reach { error: shifted(off, -shift).unsigned_abs(), within: distance == reached }
     }
+}
+
+/// The direction of a bone whose length is known: a product in place of a root.
+fn unit(v: Vector, (length, inverse): (i32, i32)) -> Vector {
+    v.map(|x| (x.max(-length).min(length) * inverse) >> 14)
 }

@@ -43,8 +43,8 @@ fn odd_files_have_the_notes_that_are_listed() {
 
 /// Extensions of files that belong to a motion, and of our own.
 const OTHERS: [&str; 4] = ["asf", "bin", "ptb", "ptn"];
-/// The page's converter is built without FBX, which compiles C, and without ZIP, for its size.
-const NOT_IN_THE_PAGE: [&str; 2] = ["FBX", "ZIP"];
+/// The page's converter is built without ZIP, for its size.
+const NOT_IN_THE_PAGE: [&str; 1] = ["ZIP"];
 
 #[test]
 fn the_page_offers_the_files_that_its_converter_reads() {

@@ -10,6 +10,7 @@
 // The page calls this function, and finds and writes memory by plain addresses.
 #![allow(unsafe_code)]
 
+mod c_library;
 mod convert;
 mod sources;
 

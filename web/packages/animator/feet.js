@@ -14,6 +14,8 @@ const PLACE = 7;
 // Microseconds in which a foot that is let go comes back to its clip, and those of the longest step.
 const RELEASE = 200000;
 const LONGEST = 4000000;
+// The sine of the least bend of a knee that shows its axis, 2 degrees.
+const LEAST_SINE = ONE / 28;
 const ORIGIN = [0, 0, 0];
 // Rotations are nine numbers, as in figure.js.
 const UNTURNED = [ONE, 0, 0, 0, ONE, 0, 0, 0, ONE];
@@ -210,9 +212,10 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         const square = (rest * rest) >> 15;
         return narrow(weighted(d, (square * (ONE + 2 * part)) >> 15) + weighted(v, (square * part) >> 15));
       });
-      // 4 t (1 - t), in 2^-13 of a lift: nothing of a foot that is held, or where the clip has it.
+      // The square of 4 t (1 - t), in 2^-13 of a lift, from rest to rest: nothing of a foot that is held, or where the clip has it.
       const part = partOf(eases[0][2], whole);
-      return [a, b, (height + floor((lift * ((part * (ONE - part)) >> 15)) / 8192)) | 0];
+      const rise = (part * (ONE - part)) >> 15;
+      return [a, b, (height + floor((lift * ((rise * rise) >> 13)) / 8192)) | 0];
     };
     // What is left of its way has no velocity from now on; its lift is a part of the height that is left.
     const settle = () => {
@@ -221,8 +224,25 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     };
     // Where it would be held at another point.
     const anchorAt = (world, contact) => added(anchor, apart(world(contact), world(point)));
+    const unitOf = (vector, length) => vector.map((x) => (clamp(x, -length, length) * trunc(2 ** 29 / max(length, 256))) >> 14);
+    const bonesOf = (hip, knee, ankle) => [unitOf(difference(knee, hip), upper), unitOf(difference(ankle, knee), lower)];
+    // Remembers how the leg bends in a pose in which it bends as it should: not in one of a transition. At least 2 degrees tell it, and half of what was seen: nearly straight legs bend to any side.
+    const learn = ([, [hip], [knee, turn], [ankle]]) => {
+      const [bend, sine] = directionOf(crossed(...bonesOf(hip, knee, ankle)));
+      if (!(sine > max(most >> 1, LEAST_SINE))) return;
+      const own = imageOf(transposed(turn), bend);
+      if (hinge && sine <= most && dot(own, hinge) < 0) return;
+      hinge = own;
+      most = max(most, sine);
+    };
     // Lets time pass; returns the leg and where its ankle is to be, if that is not where the clip has it.
     const update = ([toWorld, toPose], contact, isCalm, elapsed) => {
+      const isWhole = () => eases.every(([, , since], axis) => since === wholeOf(axis));
+      if (contact < 0 && point < 0 && isWhole()) {
+        before = contact;
+        if (isCalm && !hinge) learn(legIn());
+        return;
+      }
       eases = eases.map(([d, v, since], axis) => [d, v, min(since + elapsed, wholeOf(axis))]);
       const known = [];
       const world = (point) => toWorld(pointIn(pose, point, known));
@@ -251,14 +271,17 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         });
         isLevel &&= !isCalm;
         if (farther(way) > length() >> 2) letGo();
-      } else if (eases.every(([, , since], axis) => since === wholeOf(axis))) {
+      } else if (isWhole()) {
         lift = 0;
       }
       before = contact;
       if (contact >= 0) last = withLeft();
       const way = toPose(left()).map((x) => shifted(x, shift));
-      if (!anyBit(way)) return;
+      const isMoved = anyBit(way);
+      if (!isMoved && !isCalm) return;
       const own = legIn(known);
+      if (isCalm) learn(own);
+      if (!isMoved) return;
       // One whose leg would be stretched: more than a 32nd of it beyond what the pose does, and nearly as far as it goes.
       const [, [hip], , [ankle]] = own;
       const far = (place) => floor(sqrt(squareOf(difference(place, hip))));
@@ -270,13 +293,16 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     };
     // How far the foot is from where the clip that was entered will have it, its place, and whether it stays on the ground; nothing if it was and is in the air.
     const wayOf = ([toWorld], [toEnd], contact) => {
+      const known = [];
+      const { raw } = track.player;
+      learn(leg.map((index) => jointAt(index, raw, known)));
       const own = contact < 0 ? point : contact;
       if (own < 0) return [];
       const world = (point) => toWorld(pointIn(pose, point, []));
       const [, , rest] = left();
       const place = point < 0 ? added(world(own), left().map(big)) : anchorAt(world, own);
       if (point >= 0) place[2] = wide(world(own)[2] + big(rest));
-      return [apart(place, toEnd(pointIn(track.player.raw, own, []))), place, point >= 0 && contact >= 0];
+      return [apart(place, toEnd(pointIn(raw, own, known))), place, point >= 0 && contact >= 0];
     };
     // Enters a clip in which it stays at a place, or steps to one that is far away while a transition runs.
     const enter = (contact, place, far, time) => {
@@ -317,16 +343,12 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const solve = ([[, above], [hip, hipTurn], [knee, kneeTurn], [ankle, ankleTurn]], target) => {
       const [way, distance] = directionOf(difference(target, hip));
       if (!way || difference(target, ankle).every((x) => abs(x) < 3)) return;
-      const unitOf = (vector, length) => vector.map((x) => (clamp(x, -length, length) * trunc(2 ** 29 / max(length, 256))) >> 14);
       const times = (vector, by) => vector.map((x) => (clamp(x, -ONE, ONE) * (min(by, 0xffff) >> 1)) >> 14);
-      const old = [unitOf(difference(knee, hip), upper), unitOf(difference(ankle, knee), lower)];
+      const old = bonesOf(hip, knee, ankle);
       const [bend, sine] = directionOf(crossed(...old));
-      // At least 2 degrees show the axis of the bend; a straight knee bends as it did, or else across the way to its target.
-      // So does one that is stretched beyond that: bent the other way, and less than it was seen bent.
+      // A knee that is straight or bent the other way, as in transitions, bends as it did, or else across the way to its target.
       const known = hinge && imageOf(kneeTurn, hinge);
-      const isBent = sine > ONE / 28 && (!known || sine > most || dot(bend, known) >= 0);
-      if (isBent) most = max(hinge ? most : 0, sine);
-      if (isBent) hinge = imageOf(transposed(kneeTurn), bend);
+      const isBent = sine > LEAST_SINE && (!known || dot(bend, known) >= 0);
       const [axis = [0, 0, ONE]] = isBent ? [bend] : known ? [known] : directionOf(crossed(way, [ONE, 0, 0]));
       const [across] = directionOf(crossed(way, axis));
       const squares = old.map((bone) => (isBent ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));

@@ -212,6 +212,7 @@ impl Plan {
         }
         if self.has(Group::Web) {
             setup::rust_target(lints::WEB_TARGET)?;
+            setup::install_emulator("clang")?;
         }
         if self.host_only {
             return Ok(());

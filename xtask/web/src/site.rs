@@ -78,6 +78,8 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
+    // It compiles the reader of FBX files.
+    setup::install_emulator("clang")?;
     for Module { package, profile, name } in MODULES {
         write(&out.join(name), &module(package, "", profile)?)?;
     }

@@ -187,8 +187,9 @@ impl<'a> Foot<'a> {
     fn left_height(&self) -> i32 {
         let [flat, height] = self.since_us;
         let t = part(flat, self.step_us);
-        // 4 t (1 - t), in 2^-13 of a lift.
+        // The square of 4 t (1 - t), in 2^-13 of a lift: from rest to rest.
         let up = if self.state == State::Released { (t * ((1 << 15) - t.min(1 << 15))) >> 15 } else { 0 };
+        let up = (up * up) >> 13;
         self.rise.at(part(height, RELEASE_US)).wrapping_add(((i64::from(self.lift) * i64::from(up)) >> 13) as i32)
     }
 
@@ -215,6 +216,9 @@ impl<'a> Foot<'a> {
         }
         if contact.is_none() && self.state == State::Free {
             self.before = None;
+            if calm && self.limb.never_bent() {
+                self.limb.learn(&self.limb.places(pose));
+            }
             return None;
         }
         let places = self.limb.places(pose);
@@ -250,6 +254,9 @@ impl<'a> Foot<'a> {
         let way = frame.to_pose(left).map(|x| shifted(x, shift));
         let [.., ankle] = &places;
         let target = pantin_math::vector::add(ankle.place, way);
+        if calm {
+            self.limb.learn(&places);
+        }
         if way != [0; 3] && self.held().is_some() && self.limb.overreaches(&places, target) {
             self.rest();
             self.let_go();

@@ -98,10 +98,12 @@ impl<'a> Feet<'a> {
         // Its own pose is asked for below.
         animator.leave_carried();
         let mut ways = [None; FEET];
-        for ((foot, contact), way) in self.feet.iter().zip(contacts).zip(&mut ways) {
+        for ((foot, contact), way) in self.feet.iter_mut().zip(contacts).zip(&mut ways) {
+            let values = animator.track().values();
+            let places = foot.limb.places(values);
+            foot.limb.learn(&places);
             let Some(point) = contact.or(foot.held()) else { continue };
-            let (at, values) = (foot.place(animator.pose, frame, point), animator.track().values());
-            let place = foot.point(values, &foot.limb.places(values), point);
+            let (at, place) = (foot.place(animator.pose, frame, point), foot.point(values, &places, point));
             let [a, b, _] = difference(at, Frame::new(animator.end_of_glide(), animator.root.up()).to_world(place));
             *way = Some(Entered { point, at, way: [a, b], stays: contact.is_some() && foot.held().is_some() });
         }

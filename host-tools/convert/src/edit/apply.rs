@@ -21,7 +21,7 @@ use super::turn::turn;
 use crate::error::{Error, Setting, require};
 use crate::events;
 use crate::expand::expand_within;
-use crate::import::{self, Files, ImportOptions, read_from};
+use crate::import::{self, Files, ImportOptions, read_from, scales};
 use crate::moment::Moment;
 use crate::motion::{Event, Motion};
 use crate::note::{Note, NoteKind, Remedy};
@@ -179,6 +179,7 @@ impl Edits {
 
     fn put_on_body(&self, path: &Path, Edited { motion, notes }: &mut Edited, files: &dyn Files) -> Result<()> {
         let body = self.read_body(path, files).map_err(|error| error.in_file(path))?;
+        notes.extend(scales_left_out(motion, "body"));
         let done = body::onto(motion, &body, &self.map_text(files)?)?;
         let text = format!(
             "body: arms point at most {:.2} degrees from the source's, legs in the air {:.2}; near the ground ankles are at most {:.2} cm higher or lower than the source's in the body's scale",
@@ -287,6 +288,7 @@ impl Edits {
 
     fn put_on_display(&self, Edited { motion, notes }: &mut Edited, files: &dyn Files) -> Result<()> {
         let map = self.map_text(files)?;
+        notes.extend(scales_left_out(motion, "retarget"));
         let done = retarget::display(motion, &map)?;
         let pairs: Vec<String> = done.sources.iter().map(|(display, source)| format!("{display} {source}")).collect();
         notes.push(Note::info(NoteKind::Retarget, format!("display's joints: {}", pairs.join(", "))));
@@ -357,4 +359,11 @@ fn close_cycle(Edited { motion, notes }: &mut Edited) -> Result<()> {
 /// How many events a clip of the motion has: those of one name at one frame are one.
 fn distinct(motion: &Motion) -> usize {
     motion.events.iter().map(|event| (event.frame, &event.name)).collect::<HashSet<_>>().len()
+}
+
+/// Leaves out the scalars of scales, which belong to joints that another body does not have. `edit` is what the note begins with.
+fn scales_left_out(motion: &mut Motion, edit: &str) -> Option<Note> {
+    let joints = scales::leave_out(motion);
+    let text = format!("{edit}: the scales of {joints} joints are left out");
+    (joints > 0).then(|| Note::info(NoteKind::Retarget, text))
 }

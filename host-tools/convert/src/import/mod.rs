@@ -33,7 +33,7 @@ mod options;
 mod procedural;
 mod request;
 mod scalars;
-mod scales;
+pub(crate) mod scales;
 mod sheet;
 mod table;
 pub mod text;

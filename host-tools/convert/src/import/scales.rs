@@ -1,6 +1,6 @@
 //! Scales that change. A rig has none, so every joint below gets position channels that put it where the source has it, and the scale itself becomes scalars.
 
-use crate::motion::Scalar;
+use crate::motion::{Motion, Scalar};
 use crate::note::{Note, NoteKind, Remedy};
 
 /// Part of a scale by which it may waver and still be constant. The joints below follow smaller changes, too.
@@ -26,6 +26,27 @@ pub fn scalars(joint: &str, scales: &[[f64; 3]]) -> Vec<(Scalar, Vec<f64>)> {
         (Scalar { name: name(joint, axis), full_scale: if largest > 0.0 { largest } else { 1.0 } }, values)
     };
     changing(scales).into_iter().map(of_axis).collect()
+}
+
+/// Leaves out the scalars of joints' scales, which say nothing of another body. Returns how many joints had any.
+pub fn leave_out(motion: &mut Motion) -> usize {
+    let rig = &motion.rig;
+    let scales: Vec<String> = rig.joints.iter().flat_map(|joint| (0..3).map(|axis| name(&joint.name, axis))).collect();
+    let kept: Vec<bool> = rig.scalars.iter().map(|scalar| !scales.contains(&scalar.name)).collect();
+    let joints = rig.joints.iter().filter(|joint| {
+        let own = (0..3).map(|axis| name(&joint.name, axis));
+        own.into_iter().any(|name| rig.scalars.iter().any(|scalar| scalar.name == name))
+    });
+    let count = joints.count();
+    let channels = vec![true; rig.joint_channels()];
+    let all: Vec<bool> = channels.into_iter().chain(kept.iter().copied()).collect();
+    let mut own = all.iter();
+    motion.values.retain(|_| *own.next().unwrap_or(&true));
+    let mut own = all.iter();
+    motion.keys.retain(|_| *own.next().unwrap_or(&true));
+    let mut own = kept.iter();
+    motion.rig.scalars.retain(|_| *own.next().unwrap_or(&true));
+    count
 }
 
 /// What the user should know about the joints whose scales change.

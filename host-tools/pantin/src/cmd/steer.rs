@@ -9,6 +9,7 @@ use pantin::Bank;
 use pantin_animator::Character;
 use pantin_animator::machine::{FeetTable, Table};
 use pantin_animator::session::Replay;
+use pantin_convert::Moment;
 use pantin_figure::{CameraTarget, View};
 use pantin_images::animation::Animation;
 use pantin_images::apng::{self, Apng};
@@ -18,6 +19,7 @@ use pantin_images::sheet::{Layout, arrange};
 use pantin_pictures::machine::playback::{Stage, has_machine, joints, play, session, view_at_start};
 use serde_json::json;
 use std::io::Write;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Columns and rows of a picture, and pictures of a sheet, where nothing else is asked for.
@@ -35,6 +37,7 @@ const COLUMNS: usize = 6;
 #[command(after_help = "Examples:
   pantin steer character.ptb session.txt -o steer.gif
   pantin steer character.ptb session.txt -o steer.png --sheet 24
+  pantin steer character.ptb session.txt -o change.png --from 1.9s --to 2.8s --sheet 30 --view side
   pantin steer character.ptb session.txt -o joints.csv --fps 60
 
 A small session:
@@ -68,6 +71,12 @@ pub struct Arguments {
     /// Use a fixed camera that sees the whole session instead of following the figure
     #[arg(long)]
     fixed: bool,
+    /// First picture, by its number or as a time such as 1.9s: the session is played to there unseen
+    #[arg(long, value_name = "PICTURE")]
+    from: Option<Moment>,
+    /// Last picture, by its number or as a time such as 2.8s
+    #[arg(long, value_name = "PICTURE")]
+    to: Option<Moment>,
     /// Pictures of a contact sheet [default: 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=600))]
     sheet: Option<u32>,
@@ -87,6 +96,14 @@ enum Format {
 }
 
 impl Arguments {
+    /// Numbers of the pictures that are asked for, of all that a session has.
+    fn range(&self, all: u32) -> Result<Range<u32>> {
+        let number = |moment: Moment| moment.nearest(1.0 / f64::from(self.fps)).min(all as usize) as u32;
+        let (from, end) = (self.from.map_or(0, number), self.to.map_or(all, |to| (number(to) + 1).min(all)));
+        ensure!(from < end, "--from and --to leave no picture of {:.1} s", f64::from(all) / f64::from(self.fps));
+        Ok(from..end)
+    }
+
     fn size(&self) -> [usize; 2] {
         self.size.map_or(SIZE, |size| size.0)
     }
@@ -125,7 +142,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let text = String::from_utf8(memory::read(script)?).map_err(|_| anyhow!("{}: not text (UTF-8)", script.display()))?;
     let table = Table::of_bank(&bytes).with_context(place)?;
     let session = session(&text, &script.display().to_string(), &table)?;
-    let pictures = Replay::new(session, arguments.fps).pictures();
+    let pictures = arguments.range(Replay::new(session, arguments.fps).pictures())?;
+    let count = pictures.len();
     let mut file = Staged::create(output)?;
     let shown = Shown { arguments, bytes: &bytes, replay: Replay::new(session, arguments.fps), pictures };
     match format {
@@ -134,8 +152,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Format::Gif | Format::Apng => shown.animation(format, &mut file).with_context(place)?,
     }
     commit(vec![file])?;
-    report(json!({"pictures": pictures, "seconds": f64::from(session.end_us()) * 1e-6}));
-    note!("{}: {pictures} pictures, {:.1} s", output.display(), f64::from(session.end_us()) * 1e-6);
+    let seconds = match (arguments.from, arguments.to) {
+        (None, None) => f64::from(session.end_us()) * 1e-6,
+        _ => count as f64 / f64::from(arguments.fps),
+    };
+    report(json!({"pictures": count, "seconds": seconds}));
+    note!("{}: {count} pictures, {seconds:.1} s", output.display());
     Ok(())
 }
 
@@ -143,14 +165,17 @@ struct Shown<'a> {
     arguments: &'a Arguments,
     bytes: &'a [u8],
     replay: Replay<'a>,
-    pictures: u32,
+    pictures: Range<u32>,
 }
 
 impl<'a> Shown<'a> {
-    /// Plays all pictures.
+    /// Plays the session, and passes the pictures that are asked for by their numbers.
     fn play(&self, mut show: impl FnMut(u32, &mut Character<'a, '_>) -> Result<()>) -> Result<()> {
         let mut numbers = 0..;
-        play(self.bytes, self.replay, |character| show(numbers.next().unwrap_or(0), character))
+        play(self.bytes, self.replay, |character| {
+            let number = numbers.next().unwrap_or(0);
+            if self.pictures.contains(&number) { show(number, character) } else { Ok(()) }
+        })
     }
 
     fn stage(&self) -> Result<Stage> {
@@ -175,7 +200,7 @@ impl<'a> Shown<'a> {
         let rate = f64::from(self.arguments.fps);
         let most = if format == Format::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
         ensure!(rate <= most, "--fps {rate}: viewers show at most {most} pictures a second of this format");
-        let (palette, pictures) = (self.arguments.palette(), self.pictures);
+        let (palette, pictures) = (self.arguments.palette(), self.pictures.len() as u32);
         let (smooth, scale) = self.look(EASY_TO_SEE);
         let mut stage = self.stage()?;
         let mut animation: Box<dyn Animation + '_> = match (format, smooth) {
@@ -196,10 +221,11 @@ impl<'a> Shown<'a> {
         let palette = self.arguments.palette();
         let (smooth, scale) = self.look(EASY_TO_SEE_IN_A_SHEET);
         let mut stage = self.stage()?;
-        let count = self.arguments.sheet.unwrap_or(SHEET).min(self.pictures);
+        let Range { start, end } = self.pictures;
+        let count = self.arguments.sheet.unwrap_or(SHEET).min(end - start);
         // Each the middle of an equal part.
         let wanted: Vec<u32> = (0..u64::from(count))
-            .map(|index| ((2 * index + 1) * u64::from(self.pictures) / (2 * u64::from(count))) as u32)
+            .map(|index| start + ((2 * index + 1) * u64::from(end - start) / (2 * u64::from(count))) as u32)
             .collect();
         let rate = f64::from(self.arguments.fps);
         let mut cells = Vec::new();
@@ -229,7 +255,7 @@ impl<'a> Shown<'a> {
         let mut names = Vec::new();
         self.play(|picture, character| {
             let places = joints(character);
-            if picture == 0 {
+            if picture == self.pictures.start {
                 let clip = *character.animator().track().clip();
                 let name = |(index, joint): (usize, pantin::Joint)| match joint.end_site {
                     true => format!("end_{index}"),

@@ -48,6 +48,9 @@ struct Measured {
     /// The greatest change of an ankle's velocity, in cm a picture, and the same if nothing holds the feet.
     jerk_cm: f64,
     free_jerk_cm: f64,
+    /// How far a knee bends the other way, in degrees, and the same if nothing holds the feet.
+    backwards: f64,
+    free_backwards: f64,
 }
 
 /// A stretch in which the clips say that a foot is on the ground.
@@ -69,6 +72,28 @@ fn jerk(all: &[Vec<[f64; 3]>], of: &[usize]) -> f64 {
         (0..3).map(|own| axis(own).powi(2)).sum::<f64>().sqrt()
     };
     all.windows(3).flat_map(|window| of.iter().map(|&joint| change(window, joint))).fold(0.0, f64::max)
+}
+
+/// How far a knee bends to the side to which it does not bend most of the time, in degrees: to the front or to the back of the hips.
+fn backwards(all: &[Vec<[f64; 3]>], ankles: &[usize], parent: impl Fn(usize) -> usize) -> f64 {
+    let legs: Vec<[usize; 3]> = ankles.iter().map(|&ankle| [parent(parent(ankle)), parent(ankle), ankle]).collect();
+    let (across, mut most) = ([legs[0][0], legs[1][0]], 0f64);
+    for [hip, knee, ankle] in legs {
+        let bend = |places: &Vec<[f64; 3]>| {
+            let way = |from: usize, to: usize| [0, 1, 2].map(|axis| places[to][axis] - places[from][axis]);
+            let (thigh, shin, side) = (way(hip, knee), way(knee, ankle), way(across[0], across[1]));
+            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let axis = [0, 1, 2].map(|axis| {
+                let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+                thigh[one] * shin[other] - thigh[other] * shin[one]
+            });
+            // The part of the bend that is about the line from hip to hip.
+            dot(axis, side) / dot(side, side).sqrt() / (dot(thigh, thigh) * dot(shin, shin)).sqrt()
+        };
+        let side = all.iter().map(bend).sum::<f64>().signum();
+        most = most.max(all.iter().map(|places| -side * bend(places)).fold(0.0, f64::max));
+    }
+    most.asin().to_degrees()
 }
 
 /// A picture of a session: the places of all joints, whether each foot is held, and the number of the transition that runs.
@@ -199,6 +224,8 @@ fn measure(bytes: &[u8], text: &str, rate: u16) -> Measured {
     let height = |(own, free): (&Vec<[f64; 3]>, &Vec<[f64; 3]>)| (own[hips][up] - free[hips][up]).abs();
     measured.pelvis_cm = places.iter().zip(&free).map(height).fold(0.0, f64::max);
     (measured.jerk_cm, measured.free_jerk_cm) = (jerk(&places, &ankles), jerk(&free, &ankles));
+    let parent = |joint: usize| rig.joint(joint).unwrap().parent.unwrap().into();
+    (measured.backwards, measured.free_backwards) = (backwards(&places, &ankles, parent), backwards(&free, &ankles, parent));
     measured.intervals = intervals.len();
     let part = |interval: &Interval| f64::from(interval.held) / f64::from(interval.pictures);
     if let Some(least) = intervals.iter().min_by(|a, b| part(a).total_cmp(&part(b))) {
@@ -217,6 +244,9 @@ const LOW_CM: f64 = 1.0;
 const DRAGGED_CM: f64 = 12.0;
 /// By how much holding the feet may change the velocity of an ankle in a picture more than its clips do.
 const JERK: f64 = 1.5;
+
+/// How much more knees may bend the other way than in the clips and their transitions, in degrees.
+const BACKWARDS: f64 = 3.0;
 
 /// Measures a machine's session at two display rates, as it is and, `at_once`, with transitions that do not wait.
 fn check(bank: &Path, text: &str, session: &str, name: &str, at_once: bool) {
@@ -349,6 +379,27 @@ transitions = [{ to = \"idle\", end = true, seconds = 0.4 }]",
     session: "1.0 hold go\n2.6 release go\n4.5 hold go\n6.8 hold fast\n9.0 release go\n9.0 release fast\n11 press kick\n14.5 hold go\n17 press kick\n17.5 release go\n20.5 hold go\n21.0 hold fast\n23.3 press kick\n23.6 release go\n23.6 release fast\n27 hold go\n28.1 hold fast\n30.2 release go\n30.2 release fast\n33 end",
 };
 
+/// Longer transitions from legs that are nearly straight.
+const STRAIGHT: Captured = Captured {
+    name: "from straight legs",
+    error: "1.5cm",
+    list: "DATA/bvh_mixamo-mia_gesture.bvh --name idle --body DATA/bvh_bandai1_walk.bvh --from 71 --to 95 --loop
+DATA/bvh_bandai1_walk.bvh --name walk --body DATA/bvh_bandai1_walk.bvh --from 65 --to 129 --loop --footsteps
+DATA/bvh_bandai1_slash.bvh --name slash --body DATA/bvh_bandai1_walk.bvh --from 0 --to 135",
+    machine: "start = \"idle\"
+[feet]
+[[state]]
+name = \"idle\"
+transitions = [{ to = \"walk\", input = \"go\", sync = \"feet\", seconds = 0.4 }, { to = \"slash\", input = \"slash\", sync = \"feet\", seconds = 0.4 }]
+[[state]]
+name = \"walk\"
+transitions = [{ to = \"idle\", released = \"go\", sync = \"feet\", within = 1.0, seconds = 0.4 }]
+[[state]]
+name = \"slash\"
+transitions = [{ to = \"idle\", end = true, seconds = 0.4 }]",
+    session: "1.0 press slash\n7.0 hold go\n16.0 release go\n18.2 hold go\n19.6 release go\n21 hold go\n22.5 release go\n24 end",
+};
+
 /// Makes the bank of a list of captured motions; `None` without them.
 fn captured(own: &Captured, folder: &Path) -> Option<PathBuf> {
     let data = std::env::var_os("PANTIN_DATA").map_or_else(|| repository().join("../shared/data"), PathBuf::from);
@@ -381,6 +432,20 @@ fn no_foot_is_dragged_over_the_ground() {
         let measured = measure(&bytes, UNLIKE.session, rate);
         println!("{}, {rate} pictures a second: {measured:.3?}", UNLIKE.name);
         assert!(measured.dragged_cm <= DRAGGED_CM && measured.intervals > 10, "{measured:?}");
+    }
+}
+
+#[test]
+fn knees_bend_one_way() {
+    for own in CAPTURED.into_iter().chain([UNLIKE, STRAIGHT]) {
+        let folder = tempfile::tempdir().unwrap();
+        let Some(bank) = captured(&own, folder.path()) else { return };
+        for seconds in ["0.25", "0.35", "0.4", "0.5", "0.6"] {
+            let bytes = machine(&bank, &own.machine.replace("seconds = 0.4", &format!("seconds = {seconds}")));
+            let measured = measure(&bytes, own.session, 30);
+            println!("{}, {seconds} s: {:.1} degrees, {:.1} free", own.name, measured.backwards, measured.free_backwards);
+            assert!(measured.backwards <= measured.free_backwards + BACKWARDS, "{}: {measured:?}", own.name);
+        }
     }
 }
 

@@ -62,7 +62,7 @@ fn a_figure_with_too_many_channels_converts_once_joints_are_left_out() {
     let joints: String = (0..170).map(|index| joint(&format!("hair{index}"))).collect();
     let row = |frame: usize| (0..6 * 171).map(|channel| format!("{} ", (frame * channel) % 7)).collect::<String>();
     let rows: String = (0..4).map(|frame| row(frame) + "\n").collect();
-    folder.put("many.bvh", &format!("HIERARCHY\nROOT hips\n{{\n{six}{joints}}}\nMOTION\nFrames: 4\nFrame Time: 0.05\n{rows}"));
+    folder.put("many.bvh", format!("HIERARCHY\nROOT hips\n{{\n{six}{joints}}}\nMOTION\nFrames: 4\nFrame Time: 0.05\n{rows}"));
     let said = folder.refused(&["convert", "many.bvh", "-o", "many.ptn"]);
     assert!(said.contains("1026 channels; a rig holds at most 1023; --drop PATTERN leaves joints out"), "{said}");
     folder.done(&["convert", "many.bvh", "--drop", "hair7*", "-o", "few.ptn"]);

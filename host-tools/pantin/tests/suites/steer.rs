@@ -211,6 +211,13 @@ fn the_command_writes_pictures_and_places() {
     let table = std::fs::read_to_string(path("a.csv")).unwrap();
     assert_eq!(table.lines().count(), 1 + 16);
     assert!(table.starts_with("seconds,state,clip_frame,heading_degrees,held_left-foot,held_right-foot,root_x,"));
+    let part = pantin(&["steer", "--from", "0.2s", "--to", "9", "-o"], &[&path("part.csv"), &path("c.ptb"), &path("s.txt")]);
+    assert!(part.status.success(), "{}", String::from_utf8_lossy(&part.stderr));
+    let part = std::fs::read_to_string(path("part.csv")).unwrap();
+    let rows = |text: &str, from: usize, to: usize| {
+        text.lines().skip(1 + from).take(to + 1 - from).map(String::from).collect::<Vec<_>>()
+    };
+    assert_eq!(part.lines().skip(1).collect::<Vec<_>>(), rows(&table, 6, 9));
     let fixed = pantin(&["steer", "--fixed", "-o"], &[&path("f.gif"), &path("c.ptb"), &path("s.txt")]);
     assert!(fixed.status.success(), "{}", String::from_utf8_lossy(&fixed.stderr));
     for (name, options, why) in [
@@ -219,6 +226,7 @@ fn the_command_writes_pictures_and_places() {
         ("x.csv", &["--view", "side"], "--view is for pictures"),
         ("x.csv", &["--fixed"], "--fixed is for pictures"),
         ("x.gif", &["--sheet", "3"], "--sheet is for contact sheets"),
+        ("x.gif", &["--from", "2s"], "--from and --to leave no picture of 0.5 s"),
     ] {
         let refused = pantin(&[&["steer"], options, &["-o"]].concat(), &[&path(name), &path("c.ptb"), &path("s.txt")]);
         assert!(String::from_utf8_lossy(&refused.stderr).contains(why) && !path(name).exists(), "{options:?}");
