@@ -308,7 +308,7 @@ static void learn(pantin_foot *f, const located *at) {
 }
 
 /* The axis about which a knee bends; one that is straight or bent the other way bends as it did, or else across the way to its target. Returns 1 if it is bent. */
-static int knee_axis(const pantin_foot_state *s, const located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
+static int knee_axis(const pantin_foot_state *s, located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
     static const int32_t aside[3] = {32768, 0, 0};
     int32_t known[3], sine;
     uint8_t shows;
