@@ -84,11 +84,10 @@ pub fn compress(folder: &Path) -> Result<()> {
         const [, folder] = process.argv;
         for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|ptb|toml|wasm)$/.test(name))) {
           const bytes = readFileSync(`${folder}/${name}`);
-          // The converter takes seconds at the best quality.
-          const [quality, level] = bytes.length < 1 << 20 ? [11, 9] : [9, 6];
-          const params = { [constants.BROTLI_PARAM_QUALITY]: quality, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };
+          // Brotli's best quality by default: the converter takes 9 s, and is an eighth smaller than in half a second.
+          const params = { [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };
           writeFileSync(`${folder}/${name}.br`, brotliCompressSync(bytes, { params }));
-          writeFileSync(`${folder}/${name}.gz`, gzipSync(bytes, { level }));
+          writeFileSync(`${folder}/${name}.gz`, gzipSync(bytes, { level: 9 }));
         }
     "#;
     let Ok(node) = setup::emulator("node") else {
