@@ -38,6 +38,15 @@ unsafe extern "C" fn ufbx_free(place: *mut u8, size: usize) {
     }
 }
 
+/// `count` bytes. Of none, C allows any place.
+///
+/// # Safety
+/// `place` holds them while they are used.
+unsafe fn bytes<'a>(place: *const u8, count: usize) -> &'a [u8] {
+    // SAFETY: the caller's promise.
+    if count == 0 { &[] } else { unsafe { slice::from_raw_parts(place, count) } }
+}
+
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ufbx_memcpy(to: *mut u8, from: *const u8, count: usize) -> *mut u8 {
     // SAFETY: as C demands of the caller: both hold `count` bytes and are apart.
@@ -62,14 +71,14 @@ unsafe extern "C" fn ufbx_memset(to: *mut u8, byte: c_int, count: usize) -> *mut
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ufbx_memchr(place: *const u8, byte: c_int, count: usize) -> *const u8 {
     // SAFETY: as C demands of the caller: it holds `count` bytes.
-    let bytes = unsafe { slice::from_raw_parts(place, count) };
+    let bytes = unsafe { bytes(place, count) };
     bytes.iter().position(|&other| other == byte as u8).map_or(ptr::null(), |at| place.wrapping_add(at))
 }
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ufbx_memcmp(one: *const u8, other: *const u8, count: usize) -> c_int {
     // SAFETY: as C demands of the caller: both hold `count` bytes.
-    let [one, other] = [one, other].map(|place| unsafe { slice::from_raw_parts(place, count) });
+    let [one, other] = [one, other].map(|place| unsafe { bytes(place, count) });
     one.cmp(other) as c_int
 }
 
