@@ -14,6 +14,9 @@
 #define NO_POINT 255u
 /* The time in which a foot that is let go comes back to its clip. */
 #define RELEASE_US ((uint32_t)200000)
+/* A figure that went down comes up by a fraction of its way in each update, nearly two thirds of it in this time: its legs are nearly straight then, and
+ * bend by the root of the way. */
+#define RISE_US ((int64_t)100000)
 /* The longest step. */
 #define LONGEST_US ((uint32_t)4000000)
 /* The least bend of a knee, 1 degree, and the greatest, 150 degrees, in 2^-32 turns. */
@@ -307,27 +310,41 @@ static void learn(pantin_foot *f, const located *at) {
     s->bent = 1;
 }
 
-/* The axis about which a knee bends; one that is straight or bent the other way bends as it did, or else across the way to its target. Returns 1 if it is bent. */
-static int knee_axis(const pantin_foot_state *s, located *knee, const int32_t *thigh, const int32_t *shin, const int32_t *way, int32_t *axis) {
+/* Directions of thigh and shin, and the axis of the knee. */
+typedef struct {
+    int32_t thigh[3], shin[3], axis[3];
+} leg_plane;
+
+/* The axis about which a knee bends to a sine of `wanted`. The bend of the pose stays, and what is added is about the axis that was seen, as nearly straight
+ * legs bend to any side; a bend the other way does not stay. One that was never bent bends across the way to its target. Returns 1 if the axis is square
+ * to both bones. */
+static int knee_axis(const pantin_foot_state *s, located *knee, const leg_plane *old, const int32_t *way, int32_t wanted, int32_t *axis) {
     static const int32_t aside[3] = {32768, 0, 0};
-    int32_t known[3], sine;
-    uint8_t shows;
-    pantin_figure_cross(thigh, shin, axis);
-    shows = pantin_figure_aim_along(axis, &sine) && sine > LEAST_SINE;
-    if (s->bent) {
-        pantin_figure_apply(knee->rotation, s->hinge, known);
-        if (shows) shows = pantin_figure_dot(axis, known) >= 0;
-    }
-    if (shows) return 1;
-    if (s->bent) {
-        memcpy(axis, known, sizeof known);
+    int32_t known[3], stays[3], sine = 0, back = 0, added;
+    uint8_t i;
+    pantin_figure_cross(old->thigh, old->shin, stays);
+    memcpy(axis, stays, sizeof stays);
+    if (!pantin_figure_aim_along(axis, &sine)) sine = 0;
+    if (!s->bent) {
+        if (sine > LEAST_SINE) return 1;
+        pantin_figure_cross(way, aside, axis);
+        if (!pantin_figure_aim_along(axis, &sine)) {
+            axis[0] = axis[1] = 0;
+            axis[2] = ONE;
+        }
         return 0;
     }
-    pantin_figure_cross(way, aside, axis);
-    if (!pantin_figure_aim_along(axis, &sine)) {
-        axis[0] = axis[1] = 0;
-        axis[2] = ONE;
+    pantin_figure_apply(knee->rotation, s->hinge, known);
+    if (sine > 0) back = (int32_t)((least(sine, 2 * ONE) >> 1) * least(pantin_figure_dot(axis, known), 0)) >> 14;
+    if (back < 0) {
+        for (i = 0; i < 3; i++) stays[i] = difference(stays[i], times(known[i], back));
+        memcpy(axis, stays, sizeof stays);
+        if (!pantin_figure_aim_along(axis, &sine)) sine = 0;
     }
+    added = (int32_t)most(wanted, LEAST_SINE) - sine;
+    if (sine > 0 && added <= 0) return back == 0;
+    for (i = 0; i < 3; i++) axis[i] = sum(stays[i], times(known[i], added));
+    if (!pantin_figure_aim_along(axis, &sine)) memcpy(axis, known, sizeof known);
     return 0;
 }
 
@@ -339,25 +356,37 @@ static int square_to(const int32_t *bone, const int32_t *axis, int32_t *to) {
     return pantin_figure_aim_along(to, &length);
 }
 
-/* Directions of thigh and shin, and the axis of the knee. */
+/* How a thigh and its shin reach as far as the knee allows. */
 typedef struct {
-    int32_t thigh[3], shin[3], axis[3];
-} leg_plane;
+    int32_t reached, cosine, sine; /* of the angle at the hip */
+} leg_reach;
 
-/* The leg that reaches from the hip along `way` as far as the knee allows, in the plane of that way and the bend. Returns 0 if there is none. */
-static int reach(const pantin_foot *f, const int32_t *way, int32_t distance, const int32_t *axis, leg_plane *to) {
-    int32_t reached = (int32_t)least(most(distance, f->nearest), f->farthest), across[3], length, cosine, sine, under;
+static leg_reach reach_of(const pantin_foot *f, int32_t distance) {
+    leg_reach r;
     /* Lengths below 2^16 as 2^14: squares stay below 2^28. */
-    int32_t a = f->upper[0] >> 2, b = f->lower[0] >> 2, d = reached >> 2;
+    int32_t a = f->upper[0] >> 2, b = f->lower[0] >> 2, d;
+    r.reached = (int32_t)least(most(distance, f->nearest), f->farthest);
+    d = r.reached >> 2;
+    r.cosine = (int32_t)least(most(((a * a + d * d - b * b) * 2) / most((a * d) >> 13, 1), -ONE), ONE);
+    r.sine = (int32_t)pantin_animator_root((uint64_t)(ONE * ONE - r.cosine * r.cosine));
+    return r;
+}
+
+/* The sine of the knee's bend in a leg that reaches so far. */
+static int32_t bend_of(const pantin_foot *f, const leg_reach *r) {
+    int32_t b = f->lower[0] >> 2;
+    return b ? r->sine * (r->reached >> 2) / b : 0;
+}
+
+/* The leg that reaches from the hip along `way`, in the plane of that way and the bend. Returns 0 if there is none. */
+static int reach(const pantin_foot *f, const int32_t *way, const leg_reach *r, const int32_t *axis, leg_plane *to) {
+    int32_t across[3], length;
     uint8_t i;
     pantin_figure_cross(way, axis, across);
     if (!pantin_figure_aim_along(across, &length)) return 0;
-    under = (int32_t)most((a * d) >> 13, 1);
-    cosine = (int32_t)least(most(((a * a + d * d - b * b) * 2) / under, -ONE), ONE);
-    sine = (int32_t)pantin_animator_root((uint64_t)(ONE * ONE - cosine * cosine));
     for (i = 0; i < 3; i++) {
-        to->thigh[i] = ((way[i] * cosine) >> 15) + ((across[i] * sine) >> 15);
-        to->shin[i] = difference(times(way[i], reached), times(to->thigh[i], f->upper[0]));
+        to->thigh[i] = ((way[i] * r->cosine) >> 15) + ((across[i] * r->sine) >> 15);
+        to->shin[i] = difference(times(way[i], r->reached), times(to->thigh[i], f->upper[0]));
     }
     along_bone(to->shin, f->lower);
     pantin_figure_cross(across, way, to->axis);
@@ -369,7 +398,8 @@ static void solve(pantin_foot *f, located *at, int32_t *pose, const int32_t *tar
     const pantin_leg_bone *bones = f->bones + f->bone_count - 3;
     int32_t way[3], distance, axis[3], squares[2][3], hip[3][3], shin[3][3];
     leg_plane old, next;
-    uint8_t i, near = 1, bent;
+    leg_reach r;
+    uint8_t i, near = 1, is_square;
     for (i = 0; i < 3; i++) {
         int32_t apart = difference(target[i], at[3].place[i]);
         if (apart < -2 || apart > 2) near = 0;
@@ -377,11 +407,12 @@ static void solve(pantin_foot *f, located *at, int32_t *pose, const int32_t *tar
     subtract(target, at[1].place, way);
     if (near || !pantin_figure_aim_along(way, &distance)) return;
     bones_of(f, at, old.thigh, old.shin);
-    bent = (uint8_t)knee_axis(&f->state, &at[2], old.thigh, old.shin, way, axis);
-    if (!reach(f, way, distance, axis, &next)) return;
+    r = reach_of(f, distance);
+    is_square = (uint8_t)knee_axis(&f->state, &at[2], &old, way, bend_of(f, &r), axis);
+    if (!reach(f, way, &r, axis, &next)) return;
     memcpy(squares[0], axis, sizeof axis);
     memcpy(squares[1], axis, sizeof axis);
-    if (!bent && (!square_to(old.thigh, axis, squares[0]) || !square_to(old.shin, axis, squares[1]))) return;
+    if (!is_square && (!square_to(old.thigh, axis, squares[0]) || !square_to(old.shin, axis, squares[1]))) return;
     memcpy(hip, at[1].rotation, sizeof hip);
     turn_between(old.thigh, squares[0], next.thigh, next.axis, hip);
     memcpy(shin, at[2].rotation, sizeof shin);
@@ -578,12 +609,27 @@ static uint64_t from_hip(const wanted_leg *leg, const int32_t *place) {
     return pantin_animator_root(square);
 }
 
-/* Whether a target stretches the leg: more than a 32nd of it beyond what the pose does, and nearly as far as it goes. */
-static int overreaches(const pantin_foot *f, const wanted_leg *leg) {
+/* How far from the hip the ankle may go: three quarters of the way from where the pose has it to where the leg is straight, or by a part of a 32nd of the
+ * leg, in 2^-15. */
+static uint64_t farthest_of(const pantin_foot *f, const wanted_leg *leg, uint32_t part) {
     uint64_t own = from_hip(leg, leg->at[3].place), greatest = (uint64_t)f->farthest;
-    own += greatest / 32;
-    greatest -= greatest / 64;
-    return from_hip(leg, leg->target) > (own > greatest ? own : greatest);
+    uint64_t bent = greatest > own ? (greatest - own) * 3 / 4 : 0, by = (greatest * part) >> 20;
+    return own + (bent > by ? bent : by);
+}
+
+/* Whether a target stretches the leg too much. */
+static int overreaches(const pantin_foot *f, const wanted_leg *leg) { return from_hip(leg, leg->target) > farthest_of(f, leg, (uint32_t)ONE); }
+
+/* Makes the target of a foot that is not held the nearest one to which the leg is not stretched too much. */
+static void come_within(const posed_foot *p, wanted_leg *leg) {
+    const pantin_foot_state *s = &p->foot->state;
+    int32_t way[3], distance, farthest;
+    uint8_t i;
+    if (s->doing == LOCKED || !leg->is_wanted) return;
+    farthest = (int32_t)farthest_of(p->foot, leg, (uint32_t)(ONE - part_of(s->since_us[0], s->step_us)));
+    subtract(leg->target, leg->at[1].place, way);
+    if (!pantin_figure_aim_along(way, &distance) || distance <= farthest) return;
+    for (i = 0; i < 3; i++) leg->target[i] = sum(leg->at[1].place[i], times(way[i], farthest));
 }
 
 /* Lets time pass for a foot whose point `contact` is on the ground in the clip. */
@@ -640,6 +686,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         come_to_rest(s);
         let_go(p->foot, p->shift);
     }
+    come_within(p, leg);
 }
 
 /* ---- Both feet ---- */
@@ -854,12 +901,14 @@ static uint16_t height_channel(const pantin_foot *f, uint8_t up) {
 }
 
 /* Corrects the pose so that the legs reach. */
-static void apply(pantin_character *c, wanted_leg *legs) {
+static void apply(pantin_character *c, wanted_leg *legs, uint32_t elapsed_us) {
     pantin_feet *f = c->feet;
     int32_t *pose = c->animator.pose, drop, sunk, raw;
     uint8_t up = c->animator.axis, negative = c->animator.track.clip.rig.up & 4, i, j;
     uint16_t channel = height_channel(&f->feet[0], up);
-    drop = channel == PANTIN_NO_JOINT ? 0 : drop_of(f, legs, up, negative);
+    drop = (int32_t)((int64_t)f->sunk * RISE_US / (RISE_US + (int64_t)elapsed_us));
+    drop = f->sunk = (int32_t)most(drop, drop_of(f, legs, up, negative));
+    if (channel == PANTIN_NO_JOINT) drop = 0;
     sunk = negative ? -drop : drop;
     raw = shifted(drop, -f->shift);
     if (drop > 0) pose[channel] = difference(pose[channel], negative ? -raw : raw);
@@ -1081,7 +1130,7 @@ static pantin_result correct(pantin_character *c, uint32_t elapsed_us) {
         posed_foot p = {&f->feet[i], a->pose, &now, f->shift};
         update_foot(&p, contacts[i], a->left == 0, elapsed_us, &legs[i]);
     }
-    apply(c, legs);
+    apply(c, legs, elapsed_us);
     return PANTIN_OK;
 }
 
@@ -1090,6 +1139,7 @@ static pantin_result hold(pantin_character *c, uint32_t elapsed_us) {
     pantin_feet *f = c->feet;
     pantin_foot_state kept[PANTIN_FEET];
     int8_t exponent = f->exponent;
+    int32_t sunk = f->sunk;
     pantin_result result;
     uint8_t i;
     for (i = 0; i < f->count; i++) kept[i] = f->feet[i].state;
@@ -1097,6 +1147,7 @@ static pantin_result hold(pantin_character *c, uint32_t elapsed_us) {
     if (c->bank.source->failed == PANTIN_OK) return result;
     for (i = 0; i < f->count; i++) f->feet[i].state = kept[i];
     f->exponent = exponent;
+    f->sunk = sunk;
     f->stale = 1;
     return result;
 }
@@ -1116,8 +1167,9 @@ static pantin_result again(pantin_character *c) {
         posed_foot p = {&f->feet[i], c->animator.pose, &now, f->shift};
         places_of(p.foot, p.pose, p.shift, legs[i].at);
         want(&p, &legs[i]);
+        come_within(&p, &legs[i]);
     }
-    apply(c, legs);
+    apply(c, legs, 0);
     return PANTIN_OK;
 }
 

@@ -78,6 +78,7 @@ typedef struct pantin_feet {
     uint32_t coding;            /* of the clip in whose form the legs are */
     int16_t shift;              /* from position channels to figure units */
     int32_t most_drop;          /* how far the hips may go down: 2 cm */
+    int32_t sunk;               /* how far they went down in the last update, in figure units */
     pantin_foot feet[PANTIN_FEET];
 } pantin_feet;
 

@@ -148,14 +148,26 @@ impl<'a> Limb<'a> {
         self.greatest
     }
 
-    /// Whether a target stretches the limb: more than a 32nd of it beyond what the pose does, and nearly as far as it goes.
-    pub(crate) fn overreaches(&self, [_, hip, _, end]: &[Joint; 4], target: Vector) -> bool {
-        let far = |place: Vector| {
-            let [x, y, z] = sub(place, hip.place).map(|x| u64::from(x.unsigned_abs()).pow(2));
-            (x + y + z).isqrt()
-        };
-        let (own, greatest) = (far(end.place), u64::from(self.greatest.unsigned_abs()));
-        far(target) > (own + greatest / 32).max(greatest - greatest / 64)
+    /// How far from the upper joint the end may go: three quarters of the way from where the pose has it to where the limb is straight, or by a part of a
+    /// 32nd of the limb, in 2^-15.
+    fn farthest(&self, [_, hip, _, end]: &[Joint; 4], part: u32) -> u64 {
+        let (own, greatest) = (far(sub(end.place, hip.place)), u64::from(self.greatest.unsigned_abs()));
+        own + (greatest.saturating_sub(own) * 3 / 4).max((greatest * u64::from(part)) >> 20)
+    }
+
+    /// Whether a target stretches the limb too much.
+    pub(crate) fn overreaches(&self, places: &[Joint; 4], target: Vector) -> bool {
+        let [_, hip, ..] = places;
+        far(sub(target, hip.place)) > self.farthest(places, 1 << 15)
+    }
+
+    /// The target, or the nearest one to which the limb is not stretched too much.
+    pub(crate) fn within(&self, places: &[Joint; 4], target: Vector, part: u32) -> Vector {
+        let ([_, hip, ..], most) = (places, self.farthest(places, part) as i32);
+        match direction(sub(target, hip.place)) {
+            Some((e, distance)) if distance > most => add(hip.place, times(e, most)),
+            _ => target,
+        }
     }
 
     /// Directions of the two bones.
@@ -197,13 +209,15 @@ impl<'a> Limb<'a> {
         }
         let Some((e, distance)) = direction(sub(target, hip.place)) else { return failed };
         let [u, l] = self.bones(places);
-        // What was seen is remembered for a straight limb, and for one that is bent the other way, as in transitions.
+        let reached = distance.max(self.least).min(self.greatest);
+        // The cosine at the upper joint, (a^2 + d^2 - b^2) / 2ad: lengths below 2^16 as 2^14, squares below 2^28.
+        let [a, b, d] = [self.upper.0, self.lower.0, reached].map(|length| length >> 2);
+        let under = ((a * d) >> 13).max(1);
+        let cos = (((a * a + d * d - b * b) << 1).checked_div(under).unwrap_or(0)).clamp(-ONE, ONE);
+        let sin = (ONE * ONE - cos * cos).max(0).unsigned_abs().isqrt() as i32;
         let known = self.hinge.map(|(hinge, _)| knee.rotation.apply(hinge));
-        let bent =
-            direction(cross(u, l)).filter(|(axis, sine)| *sine > LEAST_SINE && known.is_none_or(|known| dot(*axis, known) >= 0));
-        let bent = bent.map(|(axis, _)| axis);
-        let own = bent.or(known);
-        let axis = match (own, pole) {
+        let (bend, is_square) = bend_axis(cross(u, l), known, (sin * d).checked_div(b).unwrap_or(0));
+        let axis = match (bend, pole) {
             (Some(axis), _) => axis,
             // Never bent: the pole, or any direction across.
             (None, Some(pole)) => match direction(pole).and_then(|(pole, _)| direction(cross(pole, e))) {
@@ -215,7 +229,6 @@ impl<'a> Limb<'a> {
                 None => [0, 0, ONE],
             },
         };
-        let reached = distance.max(self.least).min(self.greatest);
         let Some((n, _)) = direction(match pole {
             Some(pole) => match direction(pole) {
                 Some((pole, _)) => sub(pole, times(e, dot(pole, e))),
@@ -225,22 +238,14 @@ impl<'a> Limb<'a> {
         }) else {
             return failed;
         };
-        // The cosine at the upper joint, (a^2 + d^2 - b^2) / 2ad: lengths below 2^16 as 2^14, squares below 2^28.
-        let [a, b, d] = [self.upper.0, self.lower.0, reached].map(|length| length >> 2);
-        let under = ((a * d) >> 13).max(1);
-        let cos = (((a * a + d * d - b * b) << 1).checked_div(under).unwrap_or(0)).clamp(-ONE, ONE);
-        let sin = (ONE * ONE - cos * cos).max(0).unsigned_abs().isqrt() as i32;
         let along = |v: Vector, by: i32| v.map(|x| (x * by) >> 15);
         // In the plane of the target and the bend: unit vectors, and at right angles to the new axis.
         let new_u = add(along(e, cos), along(n, sin));
         let new_l = unit(sub(times(e, reached), times(new_u, self.upper.0)), self.lower);
         let new_axis = cross(n, e);
-        // A limb whose bend is remembered is straight: its axis is made square to each bone.
-        let square = |bone: Vector| match bent {
-            Some(axis) => Some(axis),
-            None => direction(cross(cross(bone, axis), bone)).map(|(axis, _)| axis),
-        };
-        let (Some(old_axis_u), Some(old_axis_l)) = (square(u), square(l)) else { return failed };
+        let squared =
+            |bone: Vector| if is_square { Some(axis) } else { direction(cross(cross(bone, axis), bone)).map(|(axis, _)| axis) };
+        let (Some(old_axis_u), Some(old_axis_l)) = (squared(u), squared(l)) else { return failed };
         let new_hip = between((u, old_axis_u), (new_u, new_axis)).then(&hip.rotation);
         let new_shin = between((l, old_axis_l), (new_l, new_axis)).then(&knee.rotation);
         first.write(&above.rotation, &new_hip, pose);
@@ -254,6 +259,32 @@ impl<'a> Limb<'a> {
         }
         Reach { error: shifted(off, -shift).unsigned_abs(), within: distance == reached }
     }
+}
+
+/// The axis about which a limb bends to a sine of `wanted`, and whether it is square to both bones; `None` if it was never bent. `own` is the bend of the
+/// pose and stays; what is added is about the remembered axis, as nearly straight limbs bend to any side. A bend the other way does not stay.
+fn bend_axis(own: Vector, known: Option<Vector>, wanted: i32) -> (Option<Vector>, bool) {
+    let bend = direction(own);
+    let Some(known) = known else {
+        let bend = bend.filter(|(_, sine)| *sine > LEAST_SINE).map(|(axis, _)| axis);
+        return (bend, bend.is_some());
+    };
+    let back = bend.map_or(0, |(axis, sine)| ((sine.min(2 * ONE) >> 1) * dot(axis, known).min(0)) >> 14);
+    let (stays, bend) = if back < 0 {
+        let stays = sub(own, times(known, back));
+        (stays, direction(stays))
+    } else {
+        (own, bend)
+    };
+    let added = wanted.max(LEAST_SINE) - bend.map_or(0, |(_, sine)| sine);
+    match bend {
+        Some((axis, _)) if added <= 0 => (Some(axis), back == 0),
+        _ => (Some(direction(add(stays, times(known, added))).map_or(known, |(axis, _)| axis)), false),
+    }
+}
+
+fn far(way: Vector) -> u64 {
+    way.map(|x| u64::from(x.unsigned_abs()).pow(2)).iter().sum::<u64>().isqrt()
 }
 
 /// The direction of a bone whose length is known: a product in place of a root.

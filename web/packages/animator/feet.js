@@ -14,6 +14,8 @@ const PLACE = 7;
 // Microseconds in which a foot that is let go comes back to its clip, and those of the longest step.
 const RELEASE = 200000;
 const LONGEST = 4000000;
+// Those in which a figure that went down comes up by nearly two thirds of its way.
+const RISE = 100000;
 // The sine of the least bend of a knee that shows its axis, 2 degrees.
 const LEAST_SINE = ONE / 28;
 const ORIGIN = [0, 0, 0];
@@ -29,6 +31,8 @@ const anyBit = (vector) => vector.reduce((all, x) => all | abs(x), 0);
 const cycled = (vector, by) => vector.map((_, axis) => vector[(axis + by) % 3]);
 const dot = (a, b) => (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> 15;
 const crossed = (a, b) => a.map((_, axis) => (a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3] + HALF) >> 15);
+// A vector of length 1 at most, times a length below 2^16.
+const times = (vector, by) => vector.map((x) => (min(max(x, -ONE), ONE) * (min(max(by, -0xffff), 0xffff) >> 1)) >> 14);
 const transposed = (turn) => turn.map((_, index) => turn[(index * 3) % 8 || index]);
 
 // Entries of the firmware's tables.
@@ -277,19 +281,21 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       before = contact;
       if (contact >= 0) last = withLeft();
       const way = toPose(left()).map((x) => shifted(x, shift));
-      const isMoved = anyBit(way);
-      if (!isMoved && !isCalm) return;
+      if (isCalm) learn(legIn(known));
+      if (!anyBit(way)) return;
       const own = legIn(known);
-      if (isCalm) learn(own);
-      if (!isMoved) return;
-      // One whose leg would be stretched: more than a 32nd of it beyond what the pose does, and nearly as far as it goes.
       const [, [hip], , [ankle]] = own;
       const far = (place) => floor(sqrt(squareOf(difference(place, hip))));
-      if (point >= 0 && far(sum(ankle, way)) > max(far(ankle) + (farthest >> 5), farthest - (farthest >> 6))) {
+      // How far the ankle may go: three quarters of the way from where the pose has it to where the leg is straight, or by a part of a 32nd of the leg.
+      const mostOf = (part) => far(ankle) + max(floor((max(0, farthest - far(ankle)) * 3) / 4), floor((farthest * part) / 2 ** 20));
+      if (point >= 0 && far(sum(ankle, way)) > mostOf(ONE)) {
         settle();
         letGo();
       }
-      return [own, way];
+      const reach = difference(sum(ankle, way), hip);
+      const [aim, distance] = directionOf(reach);
+      const within = mostOf(ONE - partOf(eases[0][2], whole));
+      return [own, point < 0 && distance > within ? difference(sum(hip, times(aim, within)), ankle) : way];
     };
     // How far the foot is from where the clip that was entered will have it, its place, and whether it stays on the ground; nothing if it was and is in the air.
     const wayOf = ([toWorld], [toEnd], contact) => {
@@ -339,24 +345,34 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       way[up] = 0;
       return height - floor(sqrt(max(0, reach ** 2 - squareOf(way))));
     };
+    // The axis about which the knee bends to a sine of `wanted`, after whether it is square to both bones. The bend of the pose stays, and what is added is about the axis that was seen, as
+    // nearly straight legs bend to any side; a bend the other way does not stay. One that was never bent bends across the way to its target.
+    const axisOf = (own, known, wanted, way) => {
+      let [axis, sine = 0] = directionOf(own);
+      if (!known) return sine > LEAST_SINE ? [true, [axis]] : [false, directionOf(crossed(way, [ONE, 0, 0]))];
+      const back = axis ? ((min(sine, 2 * ONE) >> 1) * min(dot(axis, known), 0)) >> 14 : 0;
+      if (back) {
+        own = difference(own, times(known, back));
+        [axis, sine = 0] = directionOf(own);
+      }
+      wanted = max(wanted, trunc(LEAST_SINE));
+      if (axis && wanted <= sine) return [!back, [axis]];
+      [axis = known] = directionOf(sum(own, times(known, wanted - sine)));
+      return [false, [axis]];
+    };
     // Turns hip and knee so that the ankle comes to a target, or as near as the knee allows. The ankle keeps its rotation in the world.
     const solve = ([[, above], [hip, hipTurn], [knee, kneeTurn], [ankle, ankleTurn]], target) => {
       const [way, distance] = directionOf(difference(target, hip));
       if (!way || difference(target, ankle).every((x) => abs(x) < 3)) return;
-      const times = (vector, by) => vector.map((x) => (clamp(x, -ONE, ONE) * (min(by, 0xffff) >> 1)) >> 14);
       const old = bonesOf(hip, knee, ankle);
-      const [bend, sine] = directionOf(crossed(...old));
-      // A knee that is straight or bent the other way, as in transitions, bends as it did, or else across the way to its target.
-      const known = hinge && imageOf(kneeTurn, hinge);
-      const isBent = sine > LEAST_SINE && (!known || dot(bend, known) >= 0);
-      const [axis = [0, 0, ONE]] = isBent ? [bend] : known ? [known] : directionOf(crossed(way, [ONE, 0, 0]));
-      const [across] = directionOf(crossed(way, axis));
-      const squares = old.map((bone) => (isBent ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));
-      if (!across || !squares.every(Boolean)) return;
       const reached = clamp(distance, closest, farthest);
       const [a, b, d] = [upper, lower, reached].map((length) => length >> 2);
       const cosine = clamp(trunc(((a * a + d * d - b * b) * 2) / max(1, (a * d) >> 13)), -ONE, ONE);
       const side = floor(sqrt(ONE * ONE - cosine * cosine));
+      const [isSquare, [axis = [0, 0, ONE]]] = axisOf(crossed(...old), hinge && imageOf(kneeTurn, hinge), b && trunc((side * d) / b), way);
+      const [across] = directionOf(crossed(way, axis));
+      const squares = old.map((bone) => (isSquare ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));
+      if (!across || !squares.every(Boolean)) return;
       const thigh = way.map((x, axis) => ((x * cosine) >> 15) + ((across[axis] * side) >> 15));
       const shin = unitOf(difference(times(way, reached), times(thigh, upper)), lower);
       const turns = [thigh, shin].map((bone, index) => then(then(columns(bone, crossed(across, way)), transposed(columns(old[index], squares[index]))), [hipTurn, kneeTurn][index]));
@@ -419,6 +435,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       enter(found[index], stays && far <= floor(length / 12) && place, far, time);
     });
   };
+  // How far the figure went down in the last update, in figure units.
+  let sunk = 0;
   find();
   return {
     next: (transition) => {
@@ -450,7 +468,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const wanted = feet.map(([, , , , update], foot) => update(axes, found[foot], !animator.left, elapsed));
       // 2 cm, at most.
       const most = shifted(shifted(min(floor((2000000 * 256) / round(rig.cmPerUnit * 1e6)), 2 ** 30), exponent + 8), shift);
-      const drop = !carrier ? 0 : min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0)));
+      sunk = max(floor((sunk * RISE) / (RISE + elapsed)), min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0))));
+      const drop = carrier ? sunk : 0;
       if (drop) pose[carrier.first + carrier.kinds.lastIndexOf(up)] -= upward * shifted(drop, -shift);
       feet.forEach((foot, index) => foot[6](wanted[index], upward * drop));
     },

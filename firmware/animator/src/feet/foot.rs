@@ -261,6 +261,9 @@ impl<'a> Foot<'a> {
             self.rest();
             self.let_go();
         }
+        let [since, _] = self.since_us;
+        let part = (1 << 15) - part(since, self.step_us);
+        let target = if self.held().is_some() { target } else { self.limb.within(&places, target, part) };
         (way != [0; 3]).then_some(Wanted { places, target })
     }
 

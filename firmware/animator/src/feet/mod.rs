@@ -15,6 +15,10 @@ use frame::Frame;
 use heapless::Vec;
 use pantin::Bank;
 
+/// A figure that went down comes up by a fraction of its way in each update, nearly two thirds of it in this time: its legs are nearly straight then, and
+/// bend by the root of the way.
+const RISE_US: i64 = 100_000;
+
 /// The feet of a [`crate::Character`], to be lent to it: [`crate::Character::lend_feet`]. About 2 kB.
 #[derive(Clone, Debug, Default)]
 pub struct Feet<'a> {
@@ -23,6 +27,8 @@ pub struct Feet<'a> {
     /// 2 cm in raw units, and the exponent of this unit.
     most_drop: i32,
     exponent: i8,
+    /// How far the figure went down in the last update, in figure units.
+    sunk: i32,
 }
 
 /// Where the clip that plays is.
@@ -42,7 +48,7 @@ pub(crate) type Hold<'a> = fn(&mut Feet<'a>, &mut Animator<'a, '_>, Instant) -> 
 impl<'a> Feet<'a> {
     /// Feet of no character yet.
     pub const fn new() -> Feet<'a> {
-        Feet { table: None, feet: Vec::new(), most_drop: 0, exponent: 0 }
+        Feet { table: None, feet: Vec::new(), most_drop: 0, exponent: 0, sunk: 0 }
     }
 
     /// The joint at which a foot of the table is held, by its index in the rig; `None` while the clip moves the foot.
@@ -199,7 +205,9 @@ pub(crate) fn hold<'a>(feet: &mut Feet<'a>, animator: &mut Animator<'a, '_>, now
     for ((foot, contact), wanted) in feet.feet.iter_mut().zip(contacts).zip(&mut wanted) {
         *wanted = foot.update(animator.pose, &frame, contact, calm, now.elapsed_us);
     }
-    let drop = feet.drop(&wanted, up, negative);
+    let left = i64::from(feet.sunk) * RISE_US / (RISE_US + i64::from(now.elapsed_us));
+    let drop = feet.drop(&wanted, up, negative).max(left as i32);
+    feet.sunk = drop;
     let down = |place: [i32; 3], by: i32| {
         let mut place = place;
         if let Some(height) = place.get_mut(up) {

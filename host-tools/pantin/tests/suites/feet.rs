@@ -48,6 +48,11 @@ struct Measured {
     /// The greatest change of an ankle's velocity, in cm a picture, and the same if nothing holds the feet.
     jerk_cm: f64,
     free_jerk_cm: f64,
+    /// The same of a knee and of the hips' height.
+    knee_cm: f64,
+    free_knee_cm: f64,
+    hips_cm: f64,
+    free_hips_cm: f64,
     /// How far a knee bends the other way, in degrees, and the same if nothing holds the feet.
     backwards: f64,
     free_backwards: f64,
@@ -225,6 +230,10 @@ fn measure(bytes: &[u8], text: &str, rate: u16) -> Measured {
     measured.pelvis_cm = places.iter().zip(&free).map(height).fold(0.0, f64::max);
     (measured.jerk_cm, measured.free_jerk_cm) = (jerk(&places, &ankles), jerk(&free, &ankles));
     let parent = |joint: usize| rig.joint(joint).unwrap().parent.unwrap().into();
+    let knees: Vec<usize> = ankles.iter().map(|&ankle| parent(ankle)).collect();
+    (measured.knee_cm, measured.free_knee_cm) = (jerk(&places, &knees), jerk(&free, &knees));
+    let heights = |all: &[Vec<[f64; 3]>]| all.iter().map(|places| vec![[0.0, 0.0, places[hips][up]]]).collect::<Vec<_>>();
+    (measured.hips_cm, measured.free_hips_cm) = (jerk(&heights(&places), &[0]), jerk(&heights(&free), &[0]));
     (measured.backwards, measured.free_backwards) = (backwards(&places, &ankles, parent), backwards(&free, &ankles, parent));
     measured.intervals = intervals.len();
     let part = |interval: &Interval| f64::from(interval.held) / f64::from(interval.pictures);
@@ -247,6 +256,10 @@ const JERK: f64 = 1.5;
 
 /// How much more knees may bend the other way than in the clips and their transitions, in degrees.
 const BACKWARDS: f64 = 3.0;
+/// By how much holding the feet may change the velocity of a knee in a picture more than its clips do: a nearly straight leg bends its knee far.
+const KNEE: f64 = 2.5;
+/// How much more it may change that of the hips' height, in cm a picture.
+const HIPS_CM: f64 = 0.7;
 
 /// Measures a machine's session at two display rates, as it is and, `at_once`, with transitions that do not wait.
 fn check(bank: &Path, text: &str, session: &str, name: &str, at_once: bool) {
@@ -436,15 +449,20 @@ fn no_foot_is_dragged_over_the_ground() {
 }
 
 #[test]
-fn knees_bend_one_way() {
+fn knees_bend_one_way_and_do_not_jump() {
     for own in CAPTURED.into_iter().chain([UNLIKE, STRAIGHT]) {
         let folder = tempfile::tempdir().unwrap();
         let Some(bank) = captured(&own, folder.path()) else { return };
         for seconds in ["0.25", "0.35", "0.4", "0.5", "0.6"] {
             let bytes = machine(&bank, &own.machine.replace("seconds = 0.4", &format!("seconds = {seconds}")));
             let measured = measure(&bytes, own.session, 30);
-            println!("{}, {seconds} s: {:.1} degrees, {:.1} free", own.name, measured.backwards, measured.free_backwards);
+            let Measured { knee_cm, free_knee_cm, hips_cm, free_hips_cm, .. } = measured;
+            println!(
+                "{}, {seconds} s: {:.1} degrees, {:.1} free; knees {knee_cm:.1} and {free_knee_cm:.1} cm, hips {hips_cm:.1} and {free_hips_cm:.1}",
+                own.name, measured.backwards, measured.free_backwards
+            );
             assert!(measured.backwards <= measured.free_backwards + BACKWARDS, "{}: {measured:?}", own.name);
+            assert!(knee_cm <= KNEE * free_knee_cm && hips_cm <= free_hips_cm + HIPS_CM, "{}: {measured:?}", own.name);
         }
     }
 }
