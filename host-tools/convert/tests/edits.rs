@@ -75,10 +75,15 @@ fn captures_of_four_conventions_have_one_rig_on_one_body_and_feet_on_the_ground(
             assert!(done.arms_deg < 0.01 && done.legs_deg < 0.01, "{path:?} on {body:?}: {} {}", done.arms_deg, done.legs_deg);
             assert!(done.ankles_cm < 1.0, "{path:?} on {body:?}: {} cm", done.ankles_cm);
             assert!(done.limited.is_empty());
+            assert!(done.uneven_deg < 8.0, "{body:?}: {} degrees", done.uneven_deg);
             rigs.push(done.motion.rig);
         }
         assert!(rigs.windows(2).all(|pair| pair[0] == pair[1]));
     }
+    // A figure that does not stand with all turns at 0, and walks in its first frame.
+    let walk = read(&data.join("bvh_bandai1_walk.bvh"));
+    let uneven = pantin_convert::edit::body::onto(&walk, &walk, "").unwrap().uneven_deg;
+    assert!((30.0..50.0).contains(&uneven), "{uneven} degrees");
 }
 
 #[test]
@@ -300,6 +305,16 @@ fn a_pace_is_a_speed_or_the_feet() {
     }
     let error = refused(&Edits::new().pace(Pace::CmPerSecond(f64::NAN)), &strider());
     assert!(error.contains("pace: expected a speed of at most 1 km a second"), "{error}");
+}
+
+#[test]
+fn a_body_whose_legs_do_not_hang_on_its_hips_is_refused() {
+    let walk = read(&motions("walk.keys"));
+    let mut body = walk.clone();
+    let thigh = body.rig.joints.iter().position(|joint| joint.name == "left-thigh").unwrap();
+    body.rig.joints[thigh].parent = Some(0);
+    let error = pantin_convert::edit::body::onto(&walk, &body, "").unwrap_err().to_string();
+    assert!(error.contains("left-thigh does not hang on hips"), "{error}");
 }
 
 #[test]

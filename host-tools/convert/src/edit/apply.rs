@@ -5,6 +5,7 @@ use super::between::between;
 use super::body;
 use super::cut::cut;
 use super::edits::{Body, Edited, Edits};
+use super::freed::freed;
 use super::in_place::in_place;
 use super::join::join;
 use super::loop_seam;
@@ -35,6 +36,8 @@ const BLEND_SECONDS: f64 = 0.25;
 
 /// Degrees to the side that a figure faces before it is noted.
 const ASIDE_DEG: f64 = 30.0;
+/// How many degrees higher one foot of a body may point than the other before that is warned of.
+const UNEVEN_DEG: f64 = 8.0;
 
 impl Edits {
     /// The frame from which the motion is kept.
@@ -202,6 +205,14 @@ impl Edits {
             );
             notes.push(Note::info(NoteKind::Retarget, text).remedy(Remedy::TurnMotion).in_file(path));
         }
+        if done.uneven_deg > UNEVEN_DEG {
+            let text = format!(
+                "body: the figure does not stand with all turns at 0, so its first frame counts as its rest, and there one foot points {:.0} degrees higher than \
+                 the other: so do the feet of what is put on it; take a body whose first frame has both feet flat on the ground",
+                done.uneven_deg
+            );
+            notes.push(Note::warning(NoteKind::Retarget, text).in_file(path));
+        }
         if !done.limited.is_empty() {
             let text =
                 format!("body: joints that cannot turn in all directions turn as far as they can: {}", done.limited.join(", "));
@@ -221,7 +232,11 @@ impl Edits {
         };
         match clip {
             Some(clip) => expand_within(&clip, self.memory).map_err(wrong),
-            None => import::import(files, path, &ImportOptions::new().memory(self.memory)).map(|imported| imported.motion),
+            None => {
+                let motion = import::import(files, path, &ImportOptions::new().memory(self.memory))?.motion;
+                // A file of animations has the channels of one of them.
+                if import::format(files, path)?.has_animations { freed(&motion).map_err(wrong) } else { Ok(motion) }
+            }
         }
     }
 

@@ -46,6 +46,9 @@ pub struct Embodied {
     pub turned_deg: i32,
     /// Degrees to the left by which the figure faces another way in the mean of all frames than the body at rest. `None` if it turns to all sides.
     pub facing_deg: Option<f64>,
+    /// Degrees by which one foot of the body points higher than the other in its first frame, if it rests in that: a figure that does not stand with all
+    /// turns at 0. The feet of all motions lean so far then.
+    pub uneven_deg: f64,
     /// Those of the body's fifteen joints that cannot turn in all directions, by their names.
     pub limited: Vec<String>,
 }
@@ -142,6 +145,7 @@ pub fn onto(motion: &Motion, body: &Motion, map: &str) -> Result<Embodied> {
         ankles_cm: 0.0,
         turned_deg: 90 * plan.quarters,
         facing_deg: None,
+        uneven_deg: plan.uneven_deg(),
         limited: plan.limited(),
     };
     for frame in 0..motion.frames {
@@ -170,6 +174,7 @@ impl<'a> Plan<'a> {
         let joints = sources(&motion.rig, map).map_err(of_source)?;
         let mut source = Figure::new(motion, joints, &to_up)?;
         let figure = Figure::new(body, sources_of_body(&body.rig)?, &IDENTITY).context("the body")?;
+        hangs_together(&body.rig, &figure.joints)?;
         let quarters = quarters(&source, &figure, vertical);
         let to_up = product(&about_vertical_by(vertical, f64::from(quarters) * PI / 2.0), &to_up);
         if quarters != 0 {
@@ -198,6 +203,20 @@ impl<'a> Plan<'a> {
     /// Degrees by which a horizontal direction is to the left of where the body faces at rest.
     fn left_of_rest(&self, ahead: [f64; 3]) -> f64 {
         angle_about(self.vertical, cross(self.body.lateral(), self.vertical), ahead).to_degrees()
+    }
+
+    /// By how many degrees one foot of a body that rests in its first frame points higher than the other.
+    fn uneven_deg(&self) -> f64 {
+        let points = LEGS.map(|leg| {
+            let foot = self.body.joints[leg[2]];
+            let toes = self.rig.joints.iter().position(|joint| joint.parent == Some(foot))?;
+            let way = unit(subtract(self.body.rest[toes].1, self.body.rest[foot].1));
+            Some(dot(way, self.vertical).clamp(-1.0, 1.0).asin().to_degrees())
+        });
+        match points {
+            [Some(left), Some(right)] if !self.body.upright => (left - right).abs(),
+            _ => 0.0,
+        }
     }
 
     /// Those of the fifteen joints that cannot turn in all directions.
@@ -446,6 +465,26 @@ impl<'a> Plan<'a> {
             }
         }
     }
+}
+
+/// Refuses a body whose limbs do not hang on its trunk: the turns of hips and chest would not carry them.
+fn hangs_together(rig: &Rig, joints: &[usize; 15]) -> Result<()> {
+    let limbs = ARMS.iter().map(|arm| (CHEST, arm)).chain(LEGS.iter().map(|leg| (HIPS, leg)));
+    let bones = limbs.flat_map(|(trunk, &[first, second, third])| [(trunk, first), (first, second), (second, third)]);
+    for (above, below) in bones.chain([(HIPS, CHEST), (CHEST, HEAD)]) {
+        let [above, below] = [above, below].map(|role| joints[role]);
+        let mut at = Some(below);
+        while at.is_some_and(|at| at != above) {
+            at = at.and_then(|at| rig.joints[at].parent);
+        }
+        let [above, below] = [above, below].map(|joint| &rig.joints[joint].name);
+        let text = format!(
+            "the body's joint {below} does not hang on {above}, which therefore does not carry it; take a figure whose joints hang on one another (a generated \
+             Rigify rig's do not, in a file of its deforming bones alone)"
+        );
+        require!(at.is_some(), Error::setting(Setting::Body, text));
+    }
+    Ok(())
 }
 
 /// The height of the ankles at rest over the lowest end of a foot.

@@ -13,6 +13,7 @@ mod edits;
 mod facing;
 pub mod find_loop;
 pub mod footsteps;
+mod freed;
 pub mod in_place;
 pub mod join;
 pub mod loop_seam;

@@ -471,3 +471,16 @@ fn a_wrong_body_is_refused_under_its_own_option_in_one_line() {
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(said.contains("--body: not found in the figure: Hips, ") && said.contains("--map FILE names them"), "{said}");
 }
+
+/// A file of an animation says what that one turns: as a body its figure turns everywhere.
+#[test]
+fn a_gltf_file_is_a_body_that_turns_everywhere() {
+    let folder = super::outputs::Folder::new();
+    let motions = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions");
+    let [walk, greet] = ["walk.ptn", "greet.keys"].map(|name| motions.join(name).to_str().unwrap().to_string());
+    folder.done(&["expand", &walk, "-o", "walk.glb"]);
+    let done = folder.run(&["convert", &greet, "--body", "walk.glb", "-o", "a.ptn"]);
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success() && said.contains("legs in the air 0.0"), "{said}");
+    assert!(!said.contains("cannot turn in all directions"), "{said}");
+}

@@ -546,7 +546,9 @@ fn a_change_of_velocity_that_no_body_could_make_is_warned_of() {
     // From 1.8 m/s.
     let hasty = stops(0.1);
     assert!(
-        hasty.len() == 1 && hasty[0].starts_with("a.toml:4: state `run`: the velocity of the figure would change by 1."),
+        hasty.len() == 1
+            && hasty[0]
+                .starts_with("a.toml:4: state `run`: in the 0.10 s to `stand` the velocity of the figure would change by 1."),
         "{hasty:?}"
     );
     assert_eq!(stops(1.0), [""; 0]);

@@ -280,11 +280,11 @@ pub(super) fn best(
 }
 
 /// The least of the greatest accelerations of the figure in a transition of `length` frames at one of these pairs of frames, in cm/s^2, and by how much its
-/// velocity changes then, in cm a second.
-pub(super) fn acceleration(from: &Clip, to: &Clip, pairs: &[(usize, usize)], length: usize, speeds: [f64; 2]) -> [f64; 2] {
+/// velocity changes then, in cm a second, and its place so that feet stay where they are, in cm.
+pub(super) fn acceleration(from: &Clip, to: &Clip, pairs: &[(usize, usize)], length: usize, speeds: [f64; 2]) -> [f64; 3] {
     let changes = pairs.iter().map(|&(at, start)| {
         let change = Change::new((from, at), (to, start), length);
-        [change.acceleration(speeds), far(change.velocity_change(speeds))]
+        [change.acceleration(speeds), far(change.velocity_change(speeds)), far(change.glide)]
     });
     changes.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default()
 }

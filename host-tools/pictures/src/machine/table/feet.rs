@@ -87,14 +87,15 @@ impl Maker<'_, '_> {
                     }
                 }
                 index += 1;
-                let ([most, change], seconds) = (acceleration(from, to, &pairs, length, speeds), length as f64 * to.frame_time());
+                let ([most, change, glide], seconds) =
+                    (acceleration(from, to, &pairs, length, speeds), length as f64 * to.frame_time());
                 if row.kind != Kind::Cut && most > MOST_ACCELERATION {
                     let text = format!(
-                        "state {}: the velocity of the figure would change by {:.1} m/s in the {seconds:.2} s to {}, faster than a body can: \
-                         a blend of both, or a state between the two, looks better",
+                        "state {}: in the {seconds:.2} s to {} the velocity of the figure would change by {:.1} m/s, and its place by {glide:.0} cm for its \
+                         feet, faster than a body can: a blend of both, a state between the two, or more `seconds` look better",
                         quoted(state.name.get_ref()),
-                        change / 100.0,
                         quoted(&row.to),
+                        change / 100.0,
                     );
                     self.warnings.push(Warning::at(file.at(transition.span()), text));
                 }
