@@ -218,6 +218,11 @@ const cases = {
     await page.getByRole("button", { name: "Undo reset", exact: true }).click();
     await says("^15 states");
     assert.equal(await text.inputValue(), less);
+    // Left and opened again, the page has the user's text.
+    await page.reload();
+    await page.locator("#edit summary").click();
+    await says("^15 states");
+    assert.equal(await text.inputValue(), less);
     await page.getByRole("button", { name: "Reset", exact: true }).click();
     await says("^16 states");
     assert.deepEqual(page.troubles, []);

@@ -181,7 +181,7 @@ $("edit").ontoggle = edit;
 const faces = new IntersectionObserver((entries) => {
   if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
   faces.disconnect();
-  import("./faces.js").catch((error) => ($("face-why").textContent = `The emotes cannot be fetched: ${error.message}.`));
+  import("./faces.js").then(({ list }) => list(downloads)).catch((error) => ($("face-why").textContent = `The emotes cannot be fetched: ${error.message}.`));
 }, { rootMargin: "400px" });
 faces.observe($("face").closest("section"));
 

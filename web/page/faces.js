@@ -10,6 +10,7 @@ for (const button of !missing ? [] : globalThis.AudioContext ? [microphone] : [m
 // What ends the present speech.
 let ends = null;
 let current = "happy";
+let filesOf;
 
 const said = (text) => ($("face-why").textContent = text || (missing && `Greyed: ${missing}.`));
 const buttons = () => [...document.querySelectorAll("#emotes button")];
@@ -28,6 +29,7 @@ async function feel(emote, isAsked) {
   buttons().forEach((button) => button.setAttribute("aria-pressed", button.dataset.name === emote.name));
   try {
     await face.load(emote.file);
+    $("emote-files").replaceChildren(filesOf(emote));
     $("emote-size").textContent = `${emote.name}: ${emote.bytes} bytes for ${face.duration.toFixed(1)} seconds that repeat`;
     if (isAsked || !wantsStill()) await face.play();
   } catch (error) {
@@ -70,7 +72,9 @@ async function talk(button, isLive, emotes) {
   again();
 }
 
-async function list() {
+// Offers the emotes; `downloads` makes links to a clip's files.
+export async function list(downloads) {
+  filesOf = downloads;
   const response = await fetch("clips/emotes.json");
   if (!response.ok) throw new Error(`the server answers ${response.status}`);
   const emotes = await response.json();
@@ -91,4 +95,3 @@ async function list() {
 }
 
 said("");
-list().catch((error) => said(`The emotes cannot be fetched: ${error.message}.`));

@@ -73,6 +73,27 @@ function offerInputs(character, held) {
   $("inputs").append(...character.parameters.map((parameter) => slider(character, parameter)));
 }
 
+// What the user made of the page's own text stays when the page is left; null without. A browser may refuse to keep it.
+const KEPT = "pantin-machine";
+
+function kept(own) {
+  try {
+    const [from, text] = JSON.parse(localStorage.getItem(KEPT)) ?? [];
+    return from === own ? text : null;
+  } catch {
+    return null;
+  }
+}
+
+function store(own, text) {
+  try {
+    if (text === own) localStorage.removeItem(KEPT);
+    else localStorage.setItem(KEPT, JSON.stringify([own, text]));
+  } catch {
+    // The text stays as long as the page.
+  }
+}
+
 // Lets the user edit the character's text.
 export async function edit({ character, steered, bytes, offer }) {
   said.textContent = "Fetching the text and its compiler.";
@@ -156,7 +177,7 @@ export async function edit({ character, steered, bytes, offer }) {
     wrong({ text: `The compiler stopped: ${message ?? "it could not be loaded"}` });
   };
 
-  text.value = own;
+  text.value = kept(own) ?? own;
   // What was reset comes back, until the text is edited.
   let before = null;
   const keep = (value) => {
@@ -165,12 +186,14 @@ export async function edit({ character, steered, bytes, offer }) {
   };
   text.oninput = () => {
     keep(null);
+    store(own, text.value);
     clearTimeout(timer);
     timer = setTimeout(compile, PAUSE);
   };
   reset.onclick = () => {
     const { value } = text;
     text.value = before ?? own;
+    store(own, text.value);
     keep(before === null ? value : null);
     compile();
   };

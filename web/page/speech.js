@@ -12,6 +12,9 @@ const ONE = 2 ** 30;
 const BLINK = 160;
 const BLINKS = [2600, 3900, 3100];
 
+// How long sound may take to begin, in milliseconds.
+const PATIENCE = 3000;
+
 // The rig of these weights, as decoder/FORMAT.md has it: no joint, and each scalar with its name.
 function rigOf(names) {
   const bytes = [0xc0, 0x84, 0x3d, 0, 1, 0, names.length, ...names.flatMap((name) => [1, name.length, ...new TextEncoder().encode(name)])];
@@ -120,7 +123,9 @@ export async function speak(player, { isLive, signal, begun, heard }) {
       await context.close();
       context = new AudioContext({ sampleRate: RATES[1] });
     }
-    await context.resume();
+    // Without a sound device some browsers never begin.
+    const late = new Promise((_, refuse) => setTimeout(refuse, PATIENCE, new Error("the browser does not begin to play sound; perhaps there is no sound device")));
+    await Promise.race([context.resume(), late]);
     if (signal.aborted) return;
     const poses = new Int32Array(NAMES.length);
     let weights = new Array(VISEMES).fill(0);

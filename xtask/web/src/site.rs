@@ -5,6 +5,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
+use pantin::Bank;
+use pantin_convert::bank;
 use pantin_convert::export;
 use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::{Length, Level, Options, convert};
@@ -164,7 +166,7 @@ const MEDLEY: [&str; 8] = ["idle", "wave", "bow", "dance", "jump", "sit_down", "
 /// The error of that clip.
 const MEDLEY_CM: f64 = 0.05;
 
-/// Our own clips, the list of them that the page reads, and a motion file for who has none.
+/// Our own clips and the motions of our character, the list of them that the page reads, and a motion file for who has none.
 fn clips(out: &Path) -> Result<()> {
     let mut list = vec![];
     for folder in ["motions", "motions/face"] {
@@ -172,12 +174,20 @@ fn clips(out: &Path) -> Result<()> {
             if clip.extension().is_some_and(|extension| extension == "ptn") {
                 let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
                 let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                list.push(listed_clip(out, &name, &bytes)?);
+                list.push(listed_clip(out, "", &name, &bytes)?);
             }
         }
     }
+    let moves = std::fs::read(paths::root().join("motions/character.ptb"))?;
+    let bank = Bank::new_checked(&moves).map_err(|error| anyhow::anyhow!("{error}"))?;
+    let rig = bank::CheckedRig::of(&bank);
+    for entry in bank.entries() {
+        if list.iter().all(|clip| clip["name"] != entry.name()) {
+            list.push(listed_clip(out, "", entry.name(), &bank::with_rig(entry.bytes(), &rig)?)?);
+        }
+    }
     let medley = medley()?;
-    list.push(listed_clip(out, "medley", &medley)?);
+    list.push(listed_clip(out, "", "medley", &medley)?);
     let walk = import::load(&paths::root().join("motions/walk.keys"), &ImportOptions::new())?.motion;
     let mut bvh = vec![];
     export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
@@ -185,9 +195,12 @@ fn clips(out: &Path) -> Result<()> {
     write(&out.join("clips.json"), json!(list).to_string().as_bytes())
 }
 
-/// Writes a clip, and as files of other programs; returns its entry in the list.
-fn listed_clip(out: &Path, name: &str, bytes: &[u8]) -> Result<serde_json::Value> {
-    let file = format!("clips/{name}.ptn");
+/// How the names of files of emotes begin.
+const EMOTE: &str = "emote-";
+
+/// Writes a clip, and as files of other programs, with names that begin so; returns its entry in the list.
+fn listed_clip(out: &Path, begin: &str, name: &str, bytes: &[u8]) -> Result<serde_json::Value> {
+    let file = format!("clips/{begin}{name}.ptn");
     write(&out.join(&file), bytes)?;
     let others = downloads::exported(&out.join(&file), bytes).with_context(|| file.clone())?;
     Ok(json!({ "name": name, "file": file, "bytes": bytes.len(), "others": others }))
@@ -199,9 +212,7 @@ fn emotes(out: &Path) -> Result<()> {
     for clip in listed(&paths::root().join("firmware/face/emotes"))? {
         let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
         let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let file = format!("clips/emote-{name}.ptn");
-        write(&out.join(&file), &bytes)?;
-        list.push(json!({ "name": name, "file": file, "bytes": bytes.len() }));
+        list.push(listed_clip(out, EMOTE, &name, &bytes)?);
     }
     write(&out.join("clips/emotes.json"), json!(list).to_string().as_bytes())
 }
