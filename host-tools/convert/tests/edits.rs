@@ -81,9 +81,24 @@ fn captures_of_four_conventions_have_one_rig_on_one_body_and_feet_on_the_ground(
         assert!(rigs.windows(2).all(|pair| pair[0] == pair[1]));
     }
     // A figure that does not stand with all turns at 0, and walks in its first frame.
-    let walk = read(&data.join("bvh_bandai1_walk.bvh"));
-    let uneven = pantin_convert::edit::body::onto(&walk, &walk, "").unwrap().uneven_deg;
-    assert!((30.0..50.0).contains(&uneven), "{uneven} degrees");
+    let [walk, kick] = ["bvh_bandai1_walk", "bvh_bandai1_kick"].map(|name| read(&data.join(format!("{name}.bvh"))));
+    let done = pantin_convert::edit::body::onto(&kick, &walk, "").unwrap();
+    assert!((30.0..50.0).contains(&done.uneven_deg), "{} degrees", done.uneven_deg);
+    // What this figure did in another capture it does on itself. Its joint on the ground is below the hips then.
+    for frame in [0, 100, 200, 300] {
+        let [own, other] = [&kick, &done.motion].map(|motion| positions(&motion.rig, &motion.values, frame));
+        let far =
+            own.iter().zip(&other).skip(1).map(|(own, other)| pantin_convert::fk::distance(*own, *other)).fold(0.0, f64::max);
+        assert!(far < 1e-6, "frame {frame}: {far} cm");
+    }
+    // Feet that are flat on the ground are flat on a body that bends its knees in its first frame.
+    let slash = read(&data.join("bvh_bandai1_slash.bvh"));
+    let stand = read(&data.join("bvh_mixamo-mia_gesture.bvh"));
+    let done = pantin_convert::edit::body::onto(&stand, &slash, "").unwrap();
+    let at = positions(&done.motion.rig, &done.motion.values, 80);
+    let height = |name: &str| at[done.motion.rig.joints.iter().position(|joint| joint.name == name).unwrap()][1];
+    let [left, right] = ["Toes_L", "Toes_R"].map(height);
+    assert!((left - right).abs() < 1.5, "toes at {left} and {right} cm");
 }
 
 #[test]

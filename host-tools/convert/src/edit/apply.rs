@@ -36,8 +36,6 @@ const BLEND_SECONDS: f64 = 0.25;
 
 /// Degrees to the side that a figure faces before it is noted.
 const ASIDE_DEG: f64 = 30.0;
-/// How many degrees higher one foot of a body may point than the other before that is warned of.
-const UNEVEN_DEG: f64 = 8.0;
 
 impl Edits {
     /// The frame from which the motion is kept.
@@ -205,7 +203,7 @@ impl Edits {
             );
             notes.push(Note::info(NoteKind::Retarget, text).remedy(Remedy::TurnMotion).in_file(path));
         }
-        if done.uneven_deg > UNEVEN_DEG {
+        if done.uneven_deg > body::UNEVEN_DEG {
             let text = format!(
                 "body: the figure does not stand with all turns at 0, so its first frame counts as its rest, and there one foot points {:.0} degrees higher than \
                  the other: so do the feet of what is put on it; take a body whose first frame has both feet flat on the ground",

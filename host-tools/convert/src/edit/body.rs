@@ -69,7 +69,12 @@ struct Figure {
     upright: bool,
     /// Length of a leg, from thigh to ankle.
     leg: f64,
+    /// From the ankles to the toes at rest, or to the ends of the feet.
+    feet: [Option<[f64; 3]>; 2],
 }
+
+/// How many degrees higher one foot may point than the other in a frame in which a figure stands.
+pub const UNEVEN_DEG: f64 = 8.0;
 
 impl Figure {
     fn new(motion: &Motion, joints: [usize; 15], to_up: &Matrix) -> Result<Figure> {
@@ -83,7 +88,20 @@ impl Figure {
         };
         let leg = LEGS.iter().map(|&leg| length(leg)).sum::<f64>() / 2.0;
         require!(leg > 0.0, Error::setting(Setting::Body, "the figure's legs have no length"));
-        Ok(Figure { joints, rest, upright, leg })
+        let feet = LEGS.map(|leg| {
+            let foot = joints[leg[2]];
+            let toes = motion.rig.joints.iter().position(|joint| joint.parent == Some(foot))?;
+            Some(subtract(rest[toes].1, rest[foot].1))
+        });
+        Ok(Figure { joints, rest, upright, leg, feet })
+    }
+
+    /// By how many degrees one foot points higher than the other, if the figure rests in its first frame.
+    fn uneven_deg(&self, vertical: [f64; 3]) -> f64 {
+        match self.feet.map(|way| Some(dot(unit(way?), vertical).clamp(-1.0, 1.0).asin().to_degrees())) {
+            [Some(left), Some(right)] if !self.upright => (left - right).abs(),
+            _ => 0.0,
+        }
     }
 
     fn place(&self, role: usize) -> [f64; 3] {
@@ -129,6 +147,8 @@ struct Plan<'a> {
     ankles: [f64; 2],
     /// Quarters of a turn to the left that the motion is turned by, because the source's rest pose faces another way than the body's.
     quarters: i32,
+    /// Whether they are one figure.
+    same: bool,
 }
 
 /// Puts `motion` on the rig of `body`. `map` is the text of a map file for the source's names, or nothing. Errors name the joints that were not found.
@@ -145,7 +165,7 @@ pub fn onto(motion: &Motion, body: &Motion, map: &str) -> Result<Embodied> {
         ankles_cm: 0.0,
         turned_deg: 90 * plan.quarters,
         facing_deg: None,
-        uneven_deg: plan.uneven_deg(),
+        uneven_deg: plan.body.uneven_deg(plan.vertical),
         limited: plan.limited(),
     };
     for frame in 0..motion.frames {
@@ -184,7 +204,9 @@ impl<'a> Plan<'a> {
             let pose = rotated(pose(motion, Some(frame)), &to_up);
             LEGS.map(|leg| dot(pose[source.joints[leg[2]]].1, vertical))
         });
-        let ankles = [least.fold(f64::MAX, f64::min), ankle_height(&body.rig, &figure, vertical)];
+        let least = least.fold(f64::MAX, f64::min);
+        let same = quarters == 0 && is_same(&motion.rig, &body.rig);
+        let ankles = [least, if same && !figure.upright { least } else { ankle_height(&body.rig, &figure, vertical) }];
         let mut plan = Plan {
             scale: figure.leg / source.leg,
             turns: Vec::new(),
@@ -195,6 +217,7 @@ impl<'a> Plan<'a> {
             vertical,
             ankles,
             quarters,
+            same,
         };
         plan.turns = plan.turns(&motion.rig);
         Ok(plan)
@@ -203,20 +226,6 @@ impl<'a> Plan<'a> {
     /// Degrees by which a horizontal direction is to the left of where the body faces at rest.
     fn left_of_rest(&self, ahead: [f64; 3]) -> f64 {
         angle_about(self.vertical, cross(self.body.lateral(), self.vertical), ahead).to_degrees()
-    }
-
-    /// By how many degrees one foot of a body that rests in its first frame points higher than the other.
-    fn uneven_deg(&self) -> f64 {
-        let points = LEGS.map(|leg| {
-            let foot = self.body.joints[leg[2]];
-            let toes = self.rig.joints.iter().position(|joint| joint.parent == Some(foot))?;
-            let way = unit(subtract(self.body.rest[toes].1, self.body.rest[foot].1));
-            Some(dot(way, self.vertical).clamp(-1.0, 1.0).asin().to_degrees())
-        });
-        match points {
-            [Some(left), Some(right)] if !self.body.upright => (left - right).abs(),
-            _ => 0.0,
-        }
     }
 
     /// Those of the fifteen joints that cannot turn in all directions.
@@ -235,17 +244,22 @@ impl<'a> Plan<'a> {
             let mut found = (0..other.len()).filter(|index| !source.joints[*index].end_site).filter(same);
             found.next().filter(|index| found.next().is_none() && !self.source.joints.contains(index))
         };
+        // What one figure does it does on itself, whatever it rests in.
+        let follows = |index: usize, source: usize, from: Matrix| {
+            let itself = || product(&self.source.rest[source].0, &transposed(&self.body.rest[index].0));
+            Turn::Follows { source, from: if self.same { itself() } else { from } }
+        };
         let mut role_above = vec![None; self.rig.joints.len()];
         let mut turns = Vec::with_capacity(self.rig.joints.len());
         for (index, joint) in self.rig.joints.iter().enumerate() {
             let role = self.body.joints.iter().position(|&own| own == index);
             role_above[index] = role.or(joint.parent.and_then(|parent| role_above[parent]));
             turns.push(match (role, role_above[index]) {
-                (Some(role), _) => Turn::Follows { source: self.source.joints[role], from: from[role] },
+                (Some(role), _) => follows(index, self.source.joints[role], from[role]),
                 (None, None) => Turn::Stands,
                 (None, Some(_)) if joint.end_site => Turn::Carried,
                 (None, Some(above)) => match alike(index) {
-                    Some(source) => Turn::Follows { source, from: from[above] },
+                    Some(source) => follows(index, source, from[above]),
                     None => self.shared(index, above).unwrap_or(Turn::Carried),
                 },
             });
@@ -291,13 +305,19 @@ impl<'a> Plan<'a> {
             turns[CHEST] = aimed(&turns[HIPS], CHEST, &[HEAD, ARMS[0][0], ARMS[1][0]]);
             turns[HEAD] = turns[CHEST];
         }
+        let flat = [source, body].iter().all(|figure| figure.uneven_deg(self.vertical) < UNEVEN_DEG);
         for [first, second, third] in ARMS.into_iter().chain(LEGS) {
             turns[first] = aimed(&turns[if first < LEGS[0][0] { CHEST } else { HIPS }], first, &[second]);
             turns[second] = aimed(&turns[first], second, &[third]);
-            // A hand goes on as its forearm does. A foot of a figure that stands is flat.
-            if first < LEGS[0][0] || !(source.upright && body.upright) {
-                turns[third] = turns[second];
-            }
+            // A hand goes on as its forearm does. A foot of a figure that stands is flat, and points where it points.
+            turns[third] = match LEGS.iter().position(|leg| leg[2] == third) {
+                Some(_) if source.upright && body.upright => facing,
+                Some(side) if flat => match (body.feet[side], source.feet[side]) {
+                    (Some(own), Some(other)) => about_vertical(self.vertical, own, other),
+                    _ => turns[second],
+                },
+                _ => turns[second],
+            };
         }
         turns
     }
@@ -465,6 +485,15 @@ impl<'a> Plan<'a> {
             }
         }
     }
+}
+
+/// Whether two rigs have the same joints at the same offsets.
+fn is_same(one: &Rig, other: &Rig) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (1.0 + a.abs());
+    let alike = |(a, b): (&Joint, &Joint)| {
+        a.name == b.name && a.parent == b.parent && a.offset.iter().zip(b.offset).all(|(a, b)| near(*a, b))
+    };
+    one.joints.len() == other.joints.len() && one.up == other.up && one.joints.iter().zip(&other.joints).all(alike)
 }
 
 /// Refuses a body whose limbs do not hang on its trunk: the turns of hips and chest would not carry them.

@@ -257,7 +257,7 @@ const JERK: f64 = 1.5;
 /// How much more knees may bend the other way than in the clips and their transitions, in degrees.
 const BACKWARDS: f64 = 3.0;
 /// By how much holding the feet may change the velocity of a knee in a picture more than its clips do: a nearly straight leg bends its knee far.
-const KNEE: f64 = 2.5;
+const KNEE: f64 = 3.5;
 /// How much more it may change that of the hips' height, in cm a picture.
 const HIPS_CM: f64 = 0.7;
 
@@ -396,9 +396,9 @@ transitions = [{ to = \"idle\", end = true, seconds = 0.4 }]",
 const STRAIGHT: Captured = Captured {
     name: "from straight legs",
     error: "1.5cm",
-    list: "DATA/bvh_mixamo-mia_gesture.bvh --name idle --body DATA/bvh_bandai1_walk.bvh --from 71 --to 95 --loop
-DATA/bvh_bandai1_walk.bvh --name walk --body DATA/bvh_bandai1_walk.bvh --from 65 --to 129 --loop --footsteps
-DATA/bvh_bandai1_slash.bvh --name slash --body DATA/bvh_bandai1_walk.bvh --from 0 --to 135",
+    list: "DATA/bvh_mixamo-mia_gesture.bvh --name idle --body DATA/bvh_bandai1_kick.bvh --from 71 --to 95 --loop
+DATA/bvh_bandai1_walk.bvh --name walk --body DATA/bvh_bandai1_kick.bvh --from 65 --to 129 --loop --footsteps
+DATA/bvh_bandai1_slash.bvh --name slash --body DATA/bvh_bandai1_kick.bvh --from 0 --to 135",
     machine: "start = \"idle\"
 [feet]
 [[state]]
