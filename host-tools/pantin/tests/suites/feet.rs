@@ -48,7 +48,7 @@ struct Measured {
     /// The greatest change of an ankle's velocity, in cm a picture, and the same if nothing holds the feet.
     jerk_cm: f64,
     free_jerk_cm: f64,
-    /// The same of a knee and of the hips' height.
+    /// The greatest change of a knee's velocity and of the hips' height, in cm a picture, and each if nothing holds the feet.
     knee_cm: f64,
     free_knee_cm: f64,
     hips_cm: f64,
