@@ -5,7 +5,7 @@
 //! apart, as one for standing. A stretch that cannot be closed, as its ends' angles are too different, is not proposed.
 
 use super::cut;
-use super::loop_seam::{least_seam, places_root};
+use super::loop_seam::{LeastSeam, least_seam, places_root};
 use crate::conversion::{CLOSING, Distance};
 use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, distance};
@@ -26,6 +26,10 @@ pub struct Cut {
     pub bound_cm: f64,
     /// The joint.
     pub joint: String,
+    /// The farthest that a joint is turned in the world from one pose to the other, in degrees.
+    pub seam_deg: f64,
+    /// The least bound on rotations in the world with which the loop is closed, in degrees.
+    pub bound_deg: f64,
     /// Whether the figure moves little in it: a loop for standing, not a cycle.
     pub still: bool,
 }
@@ -45,7 +49,8 @@ const SHORTEST_STILL: f64 = 1.0;
 /// Poses that are compared with each other at most; of a longer motion, every few frames, and then the frames beside the best.
 const POSES: usize = 1200;
 
-/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere and none of the others is one. Seams are measured at the points that `options` bound.
+/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere and none of the others is one. Seams are measured at the points that `options` bound, and joints
+/// turn by less than [`Options::max_rotation_error`] there, if it is given.
 pub fn find(motion: &Motion, options: &Options) -> Result<Vec<Cut>> {
     let bare = unmarked(motion);
     let motion = &bare;
@@ -118,15 +123,20 @@ pub fn find(motion: &Motion, options: &Options) -> Result<Vec<Cut>> {
     Ok(cuts)
 }
 
-/// The proposal of a first and a last frame; `None` where no bound is enough to close the loop, as between angles that are too different.
+/// The proposal of a first and a last frame; `None` where no bound is enough to close the loop, as between angles that are too different, or more than `options` allow.
 fn proposal(motion: &Motion, options: &Options, [from, to]: [usize; 2], still: bool) -> Result<Option<Cut>> {
     let part = cut::cut(motion, Some(from), Some(to))?;
-    let Ok((seam_cm, joint, bound_cm)) = least_seam(&part, &Distance::of(options, &part)?.pose, CLOSING) else {
+    let Ok(LeastSeam { cm: seam_cm, joint, degrees: seam_deg, bound_cm, bound_deg }) =
+        least_seam(&part, &Distance::of(options, &part)?.pose, CLOSING)
+    else {
         return Ok(None);
     };
+    if options.max_rotation_error.is_some_and(|most| bound_deg >= most) {
+        return Ok(None);
+    }
     // What the file's own rounding takes of a bound.
     let bound_cm = bound_cm + motion.origin.error_cm;
-    Ok(Some(Cut { from, to, seam_cm, bound_cm, joint, still }))
+    Ok(Some(Cut { from, to, seam_cm, bound_cm, joint, seam_deg, bound_deg, still }))
 }
 
 /// The motion as one that is no loop yet.

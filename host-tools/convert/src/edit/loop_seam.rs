@@ -23,6 +23,8 @@ pub struct Closed {
     pub seam_cm: f64,
     /// The joint of the greatest seam.
     pub seam_joint: String,
+    /// The farthest that a joint in the last frame was turned in the world from how it is in the first, in degrees.
+    pub seam_deg: f64,
     /// The farthest that a joint was moved, in cm, measured alike.
     pub moved_cm: f64,
     /// The joint.
@@ -78,18 +80,29 @@ pub(crate) fn first_that_fits<T>(motion: &Motion, most: Most, attempt: impl Fn(&
     Err(refused.map_or_else(|| open("the motion has no seam".into()).into(), |(_, error)| error))
 }
 
-/// The seam of the choice of ways with which the least bound on the points of `pose` is enough: how far the farthest joint is off in cm, the joint, and that bound, of
-/// which closing takes less than the part `closing`.
-pub(crate) fn least_seam(motion: &Motion, pose: &PoseBound, closing: f64) -> Result<(f64, String, f64)> {
+/// The seam of a motion, and the least bounds with which it is closed.
+pub(crate) struct LeastSeam {
+    /// How far the farthest joint is off in cm, and the joint.
+    pub cm: f64,
+    pub joint: String,
+    /// How far a joint is turned in the world at most, in degrees.
+    pub degrees: f64,
+    pub bound_cm: f64,
+    pub bound_deg: f64,
+}
+
+/// The seam of the choice of ways with which the least bound on the points of `pose` is enough. Closing takes less than the part `closing` of a bound.
+pub(crate) fn least_seam(motion: &Motion, pose: &PoseBound, closing: f64) -> Result<LeastSeam> {
     let bound = PoseBound { shell: pose.shell, ..PoseBound::places(f64::MAX) };
     let most = Most::Distance(&bound, f64::MAX);
     let steps = differences(motion);
-    let mut least: Option<(f64, String, f64)> = None;
+    let mut least: Option<LeastSeam> = None;
     for ways in choices(motion, &steps, most) {
         let closed = close_but_for(motion, most, &ways)?;
-        let needed = closed.seam_cm.max(closed.moved_cm / closing);
-        if least.as_ref().is_none_or(|(.., other)| needed < *other) {
-            least = Some((closed.seam_cm, closed.seam_joint, needed));
+        let (bound_cm, degrees) = (closed.seam_cm.max(closed.moved_cm / closing), closed.seam_deg);
+        if least.as_ref().is_none_or(|other| bound_cm < other.bound_cm) {
+            let (cm, joint, bound_deg) = (closed.seam_cm, closed.seam_joint, degrees.max(closed.turned_deg / closing));
+            least = Some(LeastSeam { cm, joint, degrees, bound_cm, bound_deg });
         }
     }
     least.ok_or_else(|| open("the motion has no seam".into()).into())
@@ -126,6 +139,7 @@ pub(crate) fn close_but_for(motion: &Motion, most: Most, ways: &[usize]) -> Resu
             motion: motion.clone(),
             seam_cm: 0.0,
             seam_joint: String::new(),
+            seam_deg: 0.0,
             moved_cm: 0.0,
             joint: String::new(),
             turned_deg: 0.0,
@@ -141,7 +155,7 @@ pub(crate) fn close_but_for(motion: &Motion, most: Most, ways: &[usize]) -> Resu
     check(motion, &steps, ways, most)?;
     let shell_cm = most.shell_cm();
     let gap = seam(motion, ways, shell_cm);
-    let (seam_cm, seam_joint) = (gap.cm, gap.name(motion));
+    let (seam_cm, seam_joint, seam_deg) = (gap.cm, gap.name(motion), gap.degrees);
     let last = (motion.frames - 1) as f64;
     let part = |frame: usize| frame as f64 / last - 0.5;
     let mut out = motion.clone();
@@ -169,6 +183,7 @@ pub(crate) fn close_but_for(motion: &Motion, most: Most, ways: &[usize]) -> Resu
         motion: out,
         seam_cm,
         seam_joint,
+        seam_deg,
         moved_cm: closing.cm,
         joint: closing.name(motion),
         turned_deg: closing.degrees,

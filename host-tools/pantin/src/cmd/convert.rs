@@ -76,8 +76,9 @@ pub struct Arguments {
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
-    /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
-    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
+    /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out. With --max-rotation-error those whose joints
+    /// turn by more at the seam are left out
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
     /// Write nothing; print what would be written, after reading and checking the motions
     #[arg(long, conflicts_with_all = ["list", "find_loop"])]
@@ -361,23 +362,27 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     let asked_cm = if let Length::Cm(cm) = Options::MAX_ERROR { cm } else { 0.0 };
     let bound_cm = |cut: &Cut| asked_cm.max(((cut.bound_cm * 10.0).floor() + 1.0) / 10.0);
     if output::is_json() {
-        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "max_error_cm": bound_cm(cut), "joint": cut.joint, "seconds": seconds(cut), "still": cut.still});
+        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "seam_degrees": cut.seam_deg, "max_error_cm": bound_cm(cut), "joint": cut.joint, "seconds": seconds(cut), "still": cut.still});
         output::report(json!({"loops": cuts.iter().map(object).collect::<Vec<_>>()}));
         return Ok(());
     }
+    let turning = arguments.max_rotation_error.map_or_else(String::new, |most| format!(" --max-rotation-error {most}"));
     for cut in &cuts {
         let (frames, joint) = (cut.to - cut.from, output::clean(&cut.joint));
         outln!(
-            "--from {} --to {} --loop --max-error {}cm: {frames} frames, {:.2} s, seam {:.3} cm ({joint}){}",
+            "--from {} --to {} --loop --max-error {}cm{turning}: {frames} frames, {:.2} s, seam {:.3} cm ({joint}), {:.1} degrees{}",
             cut.from,
             cut.to,
             bound_cm(cut),
             seconds(cut),
             cut.seam_cm,
+            cut.seam_deg,
             if cut.still { "; the figure stands" } else { "" }
         )?;
     }
-    ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle", place());
+    let within =
+        arguments.max_rotation_error.map_or_else(String::new, |most| format!(" whose seam turns no joint by {most} degrees"));
+    ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle{within}", place());
     if !cuts.iter().any(|cut| cut.still) {
         note!("{}: no line for standing: the figure moves all the time, or stands for less than a second", place());
     }

@@ -107,6 +107,28 @@ fn the_best_loop_of_a_motion_is_found() {
 }
 
 #[test]
+fn proposed_loops_keep_a_bound_on_rotations() {
+    let folder = super::outputs::Folder::new();
+    // Waves of 25 frames that turn on by 2.5 degrees each.
+    let rows: String = (0..80)
+        .map(|frame| format!(" {frame} {}\n", 0.1 * f64::from(frame) + 30.0 * (f64::from(frame) * 14.4).to_radians().sin()))
+        .collect();
+    let figure = "joint hips offset 0 90 0 channels Zrotation\nend parent hips offset 0 60 0\n";
+    folder.put("swing.keys", format!("keyframes 1\nfps 30\nframes 80\ncm-per-unit 1\n{figure}keys linear hips\n{rows}"));
+    let bounded = |bound| ["convert", "swing.keys", "--find-loop", "--max-rotation-error", bound];
+    let printed = String::from_utf8(folder.done(&bounded("3")).stdout).unwrap();
+    assert!(!printed.is_empty());
+    for line in printed.lines() {
+        let (options, result) = line.split_once(": ").unwrap();
+        assert!(options.ends_with(" --max-rotation-error 3") && result.contains(" degrees"), "{line}");
+        let loops = ["convert", "swing.keys", "-o", "swing.ptn"].into_iter().chain(options.split(' '));
+        folder.done(&loops.collect::<Vec<_>>());
+    }
+    let refused = folder.refused(&bounded("0.0001"));
+    assert!(refused.contains("whose seam turns no joint by 0.0001 degrees"), "{refused}");
+}
+
+#[test]
 fn a_motion_that_is_one_cycle_is_proposed_whole_and_standing_apart() {
     let folder = super::outputs::Folder::new();
     let figure = "joint hips offset 0 90 0 channels Xposition Zrotation\nend parent hips offset 0 60 0\n";
