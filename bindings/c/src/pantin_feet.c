@@ -14,9 +14,9 @@
 #define NO_POINT 255u
 /* The time in which a foot that is let go comes back to its clip. */
 #define RELEASE_US ((uint32_t)200000)
-/* A figure that went down comes up by a fraction of its way in each update, nearly two thirds of it in this time: its legs are nearly straight then, and
- * bend by the root of the way. */
-#define RISE_US ((int64_t)100000)
+/* A figure goes down and comes up by a fraction of its way in each update, nearly two thirds of it in this time: nearly straight legs bend by the root of the
+ * way. */
+#define DROP_US ((int64_t)50000)
 /* The longest step. */
 #define LONGEST_US ((uint32_t)4000000)
 /* The least bend of a knee, 1 degree, and the greatest, 150 degrees, in 2^-32 turns. */
@@ -563,10 +563,10 @@ static void keep(pantin_foot *f, int16_t shift, const int64_t *way, int calm, ui
     if (wide_size(way[0]) > far || wide_size(way[1]) > far) let_go(f, shift);
 }
 
-/* A leg in a pose, and where its ankle is to be: in figure units. */
+/* A leg in a pose, where its ankle is to be, and the distance of `free_of`: in figure units. */
 typedef struct {
     located at[4];
-    int32_t target[3];
+    int32_t target[3], free;
     uint8_t is_wanted;
 } wanted_leg;
 
@@ -584,6 +584,29 @@ static void world_of(const posed_foot *p, const wanted_leg *leg, uint8_t point, 
     to_world(p->stand, place, to);
 }
 
+/* The distance of a place from the hip. */
+static uint64_t from_hip(const wanted_leg *leg, const int32_t *place) {
+    uint64_t square = 0;
+    uint8_t i;
+    for (i = 0; i < 3; i++) {
+        uint64_t way = (uint64_t)wide_size(difference(place[i], leg->at[1].place[i]));
+        square += way * way;
+    }
+    return pantin_animator_root(square);
+}
+
+/* The distance of the ankle from the hip past which it comes less and less far, so that the leg does not snap straight: where it bends by 25 degrees, or where
+ * the pose has the ankle. A pose that bends by less than 14 degrees gives up these, when its ankle has to move by a 64th of the leg. */
+static int32_t free_of(const pantin_foot *f, const wanted_leg *leg) {
+    int32_t greatest = f->farthest, bent = greatest - 3 * greatest / 128, straight = greatest - greatest / 128, part = greatest / 64;
+    int32_t own = (int32_t)least((int64_t)from_hip(leg, leg->at[3].place), greatest);
+    int64_t way = 0;
+    uint8_t i;
+    for (i = 0; i < 3; i++) way = most(way, wide_size(difference(leg->target[i], leg->at[3].place[i])));
+    if (part && own > straight) own -= (own - straight) * (int32_t)least(way, part) / part;
+    return own > bent ? own : bent;
+}
+
 /* Where the ankle is to be by what is left of the foot's way: nothing is wanted if it stays where the clip has it. */
 static void want(const posed_foot *p, wanted_leg *leg) {
     int32_t left[3], way[3];
@@ -596,40 +619,26 @@ static void want(const posed_foot *p, wanted_leg *leg) {
         if (way[i] != 0) leg->is_wanted = 1;
         leg->target[i] = sum(leg->at[3].place[i], way[i]);
     }
+    if (leg->is_wanted) leg->free = free_of(p->foot, leg);
 }
 
-/* The distance of a place from the hip. */
-static uint64_t from_hip(const wanted_leg *leg, const int32_t *place) {
-    uint64_t square = 0;
+/* Whether a target stretches the leg too much: by more than three quarters of the way from where the pose has the ankle to where the leg is straight, and by
+ * more than a 32nd of the leg. */
+static int overreaches(const pantin_foot *f, const wanted_leg *leg) {
+    int64_t own = (int64_t)from_hip(leg, leg->at[3].place), greatest = f->farthest;
+    return (int64_t)from_hip(leg, leg->target) > own + most(most(greatest - own, 0) * 3 / 4, greatest / 32);
+}
+
+/* Brings a target that is past the free distance nearer. */
+static void come_within(const pantin_foot *f, wanted_leg *leg) {
+    int32_t way[3], distance, over, soft = f->farthest - f->farthest / 128 - leg->free;
     uint8_t i;
-    for (i = 0; i < 3; i++) {
-        uint64_t way = (uint64_t)wide_size(difference(place[i], leg->at[1].place[i]));
-        square += way * way;
-    }
-    return pantin_animator_root(square);
-}
-
-/* How far from the hip the ankle may go: three quarters of the way from where the pose has it to where the leg is straight, or by a part of a 32nd of the
- * leg, in 2^-15. */
-static uint64_t farthest_of(const pantin_foot *f, const wanted_leg *leg, uint32_t part) {
-    uint64_t own = from_hip(leg, leg->at[3].place), greatest = (uint64_t)f->farthest;
-    uint64_t bent = greatest > own ? (greatest - own) * 3 / 4 : 0, by = (greatest * part) >> 20;
-    return own + (bent > by ? bent : by);
-}
-
-/* Whether a target stretches the leg too much. */
-static int overreaches(const pantin_foot *f, const wanted_leg *leg) { return from_hip(leg, leg->target) > farthest_of(f, leg, (uint32_t)ONE); }
-
-/* Makes the target of a foot that is not held the nearest one to which the leg is not stretched too much. */
-static void come_within(const posed_foot *p, wanted_leg *leg) {
-    const pantin_foot_state *s = &p->foot->state;
-    int32_t way[3], distance, farthest;
-    uint8_t i;
-    if (s->doing == LOCKED || !leg->is_wanted) return;
-    farthest = (int32_t)farthest_of(p->foot, leg, (uint32_t)(ONE - part_of(s->since_us[0], s->step_us)));
+    if (soft < f->farthest / 256) soft = f->farthest / 256;
     subtract(leg->target, leg->at[1].place, way);
-    if (!pantin_figure_aim_along(way, &distance) || distance <= farthest) return;
-    for (i = 0; i < 3; i++) leg->target[i] = sum(leg->at[1].place[i], times(way[i], farthest));
+    if (!pantin_figure_aim_along(way, &distance) || distance <= leg->free) return;
+    over = (int32_t)least((int64_t)distance - leg->free, 0xffff);
+    if (over + soft) over = over * soft / (over + soft);
+    for (i = 0; i < 3; i++) leg->target[i] = sum(leg->at[1].place[i], times(way[i], leg->free + over));
 }
 
 /* Lets time pass for a foot whose point `contact` is on the ground in the clip. */
@@ -686,7 +695,6 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         come_to_rest(s);
         let_go(p->foot, p->shift);
     }
-    come_within(p, leg);
 }
 
 /* ---- Both feet ---- */
@@ -870,22 +878,14 @@ static int32_t drop_of(const pantin_feet *f, const wanted_leg *legs, uint8_t up,
     int64_t drop = 0;
     uint8_t i, j;
     for (i = 0; i < f->count; i++) {
-        const pantin_foot *foot = &f->feet[i];
         const wanted_leg *leg = &legs[i];
-        int32_t own[3], way[3];
-        int64_t square[2] = {0, 0}, height, bound;
+        int32_t way[3];
+        int64_t square = 0, height, bound;
         if (!leg->is_wanted) continue;
-        subtract(leg->at[1].place, leg->at[3].place, own);
         subtract(leg->at[1].place, leg->target, way);
-        for (j = 0; j < 3; j++) {
-            square[0] = wide_sum(square[0], wide_square(own[j]));
-            square[1] = wide_sum(square[1], wide_square(way[j]));
-        }
-        /* Not straighter than in the clip, or nearly straight. */
-        bound = (int64_t)pantin_animator_root((uint64_t)wide_size(square[0]));
-        bound = least(most(bound, foot->farthest - foot->farthest / 128), foot->farthest);
+        for (j = 0; j < 3; j++) square = wide_sum(square, wide_square(way[j]));
         height = negative ? difference(0, way[up]) : way[up];
-        bound = most(wide_difference(bound * bound, wide_difference(square[1], wide_square(height))), 0);
+        bound = most(wide_difference(wide_square(leg->free), wide_difference(square, wide_square(height))), 0);
         drop = most(drop, height - (int64_t)pantin_animator_root((uint64_t)bound));
     }
     return (int32_t)least(drop, shifted(f->most_drop, f->shift));
@@ -903,26 +903,27 @@ static uint16_t height_channel(const pantin_foot *f, uint8_t up) {
 /* Corrects the pose so that the legs reach. */
 static void apply(pantin_character *c, wanted_leg *legs, uint32_t elapsed_us) {
     pantin_feet *f = c->feet;
-    int32_t *pose = c->animator.pose, drop, sunk, raw;
     uint8_t up = c->animator.axis, negative = c->animator.track.clip.rig.up & 4, i, j;
+    int32_t *pose = c->animator.pose, drop = drop_of(f, legs, up, negative), down, raw;
     uint16_t channel = height_channel(&f->feet[0], up);
-    drop = (int32_t)((int64_t)f->sunk * RISE_US / (RISE_US + (int64_t)elapsed_us));
-    drop = f->sunk = (int32_t)most(drop, drop_of(f, legs, up, negative));
+    f->sunk = drop = drop + (int32_t)((int64_t)(f->sunk - drop) * DROP_US / (DROP_US + (int64_t)elapsed_us));
     if (channel == PANTIN_NO_JOINT) drop = 0;
-    sunk = negative ? -drop : drop;
+    down = negative ? -drop : drop;
     raw = shifted(drop, -f->shift);
     if (drop > 0) pose[channel] = difference(pose[channel], negative ? -raw : raw);
     for (i = 0; i < f->count; i++) {
         wanted_leg *leg = &legs[i];
         if (!leg->is_wanted && drop <= 0) continue;
         if (leg->is_wanted) {
-            for (j = 0; j < 4; j++) leg->at[j].place[up] = difference(leg->at[j].place[up], sunk);
+            for (j = 0; j < 4; j++) leg->at[j].place[up] = difference(leg->at[j].place[up], down);
         } else {
             /* A foot that is free stays where it is while the figure goes down. */
             places_of(&f->feet[i], pose, f->shift, leg->at);
             memcpy(leg->target, leg->at[3].place, sizeof leg->target);
-            leg->target[up] = sum(leg->target[up], sunk);
+            leg->free = free_of(&f->feet[i], leg);
+            leg->target[up] = sum(leg->target[up], down);
         }
+        come_within(&f->feet[i], leg);
         solve(&f->feet[i], leg->at, pose, leg->target);
     }
 }
@@ -1167,7 +1168,6 @@ static pantin_result again(pantin_character *c) {
         posed_foot p = {&f->feet[i], c->animator.pose, &now, f->shift};
         places_of(p.foot, p.pose, p.shift, legs[i].at);
         want(&p, &legs[i]);
-        come_within(&p, &legs[i]);
     }
     apply(c, legs, 0);
     return PANTIN_OK;

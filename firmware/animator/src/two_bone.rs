@@ -143,29 +143,32 @@ impl<'a> Limb<'a> {
         self.chain.bones.iter().rev().skip(3).rev().find_map(|bone| bone.position(axis))
     }
 
-    /// The distance of the end from the upper joint at which the limb is stretched as far as its limits allow, in figure units.
-    pub(crate) fn greatest(&self) -> i32 {
-        self.greatest
+    /// The distance of the end from the upper joint past which the end comes less and less far, so that the limb does not snap straight: where it bends by 25
+    /// degrees, or where the pose has the end. A pose that bends by less than 14 degrees gives up these, when its end has to move by a 64th of the limb.
+    pub(crate) fn free(&self, [_, hip, _, end]: &[Joint; 4], target: Vector) -> i32 {
+        let [bent, straight] = [3, 1].map(|part| self.greatest - part * self.greatest / 128);
+        let own = (far(sub(end.place, hip.place)) as i32).min(self.greatest);
+        let way = sub(target, end.place).map(|x| x.saturating_abs()).into_iter().fold(0, i32::max);
+        let over = (own - straight).max(0);
+        let given = (over * way.min(self.greatest / 64)).checked_div(self.greatest / 64).unwrap_or(0);
+        (own - given).max(bent)
     }
 
-    /// How far from the upper joint the end may go: three quarters of the way from where the pose has it to where the limb is straight, or by a part of a
-    /// 32nd of the limb, in 2^-15.
-    fn farthest(&self, [_, hip, _, end]: &[Joint; 4], part: u32) -> u64 {
+    /// Whether a target stretches the limb too much: by more than three quarters of the way from where the pose has the end to where the limb is straight, and
+    /// by more than a 32nd of the limb.
+    pub(crate) fn overreaches(&self, [_, hip, _, end]: &[Joint; 4], target: Vector) -> bool {
         let (own, greatest) = (far(sub(end.place, hip.place)), u64::from(self.greatest.unsigned_abs()));
-        own + (greatest.saturating_sub(own) * 3 / 4).max((greatest * u64::from(part)) >> 20)
+        far(sub(target, hip.place)) > own + (greatest.saturating_sub(own) * 3 / 4).max(greatest / 32)
     }
 
-    /// Whether a target stretches the limb too much.
-    pub(crate) fn overreaches(&self, places: &[Joint; 4], target: Vector) -> bool {
-        let [_, hip, ..] = places;
-        far(sub(target, hip.place)) > self.farthest(places, 1 << 15)
-    }
-
-    /// The target, or the nearest one to which the limb is not stretched too much.
-    pub(crate) fn within(&self, places: &[Joint; 4], target: Vector, part: u32) -> Vector {
-        let ([_, hip, ..], most) = (places, self.farthest(places, part) as i32);
+    /// The target or, past a distance of [`Limb::free`], one that is nearer.
+    pub(crate) fn within(&self, [_, hip, ..]: &[Joint; 4], free: i32, target: Vector) -> Vector {
+        let soft = (self.greatest - self.greatest / 128 - free).max(self.greatest / 256);
         match direction(sub(target, hip.place)) {
-            Some((e, distance)) if distance > most => add(hip.place, times(e, most)),
+            Some((e, distance)) if distance > free => {
+                let over = (distance - free).min(0xffff);
+                add(hip.place, times(e, free + (over * soft).checked_div(over + soft).unwrap_or(0)))
+            }
             _ => target,
         }
     }

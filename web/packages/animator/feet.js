@@ -14,8 +14,8 @@ const PLACE = 7;
 // Microseconds in which a foot that is let go comes back to its clip, and those of the longest step.
 const RELEASE = 200000;
 const LONGEST = 4000000;
-// Those in which a figure that went down comes up by nearly two thirds of its way.
-const RISE = 100000;
+// Those in which a figure goes down or comes up by nearly two thirds of its way: nearly straight legs bend by the root of it.
+const DROP = 50000;
 // The sine of the least bend of a knee that shows its axis, 2 degrees.
 const LEAST_SINE = ONE / 28;
 const ORIGIN = [0, 0, 0];
@@ -27,6 +27,7 @@ const farther = ([a, b]) => (size(a) > size(b) ? size(a) : size(b));
 const sum = (a, b) => a.map((x, axis) => (x + b[axis]) | 0);
 const difference = (a, b) => a.map((x, axis) => (x - b[axis]) | 0);
 const squareOf = (vector) => vector.reduce((sum, x) => sum + x * x, 0);
+const farTo = (a, b) => floor(sqrt(squareOf(difference(a, b))));
 const anyBit = (vector) => vector.reduce((all, x) => all | abs(x), 0);
 const cycled = (vector, by) => vector.map((_, axis) => vector[(axis + by) % 3]);
 const dot = (a, b) => (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> 15;
@@ -239,7 +240,15 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       hinge = own;
       most = max(most, sine);
     };
-    // Lets time pass; returns the leg and where its ankle is to be, if that is not where the clip has it.
+    // The distance of the ankle from the hip past which it comes less and less far, so that the leg does not snap straight: where it bends by 25 degrees, or where the pose has the ankle. A pose that
+    // bends by less than 14 degrees gives up these, when its ankle has to move by a 64th of the leg.
+    const freeOf = ([, [hip], , [ankle]], way) => {
+      const own = min(farTo(ankle, hip), farthest);
+      const part = farthest >> 6;
+      const over = max(0, own - (farthest - (farthest >> 7)));
+      return max(own - floor((over * min(max(...way.map(abs)), part)) / max(1, part)), farthest - floor((3 * farthest) / 128));
+    };
+    // Lets time pass; returns the leg, the way of its ankle and how far it may go at least, if the ankle is not where the clip has it.
     const update = ([toWorld, toPose], contact, isCalm, elapsed) => {
       const isWhole = () => eases.every(([, , since], axis) => since === wholeOf(axis));
       if (contact < 0 && point < 0 && isWhole()) {
@@ -285,17 +294,13 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       if (!anyBit(way)) return;
       const own = legIn(known);
       const [, [hip], , [ankle]] = own;
-      const far = (place) => floor(sqrt(squareOf(difference(place, hip))));
-      // How far the ankle may go: three quarters of the way from where the pose has it to where the leg is straight, or by a part of a 32nd of the leg.
-      const mostOf = (part) => far(ankle) + max(floor((max(0, farthest - far(ankle)) * 3) / 4), floor((farthest * part) / 2 ** 20));
-      if (point >= 0 && far(sum(ankle, way)) > mostOf(ONE)) {
+      const reached = farTo(ankle, hip);
+      // Stretched by more than three quarters of the way to where the leg is straight, and by more than a 32nd of it.
+      if (point >= 0 && farTo(sum(ankle, way), hip) > reached + max(floor((max(0, farthest - reached) * 3) / 4), farthest >> 5)) {
         settle();
         letGo();
       }
-      const reach = difference(sum(ankle, way), hip);
-      const [aim, distance] = directionOf(reach);
-      const within = mostOf(ONE - partOf(eases[0][2], whole));
-      return [own, point < 0 && distance > within ? difference(sum(hip, times(aim, within)), ankle) : way];
+      return [own, way, freeOf(own, way)];
     };
     // How far the foot is from where the clip that was entered will have it, its place, and whether it stays on the ground; nothing if it was and is in the air.
     const wayOf = ([toWorld], [toEnd], contact) => {
@@ -337,13 +342,11 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       eases = eases.map(([d, v, since]) => [shifted(d, -by), shifted(v, -by), since]);
     };
     // How far the hips go down for a leg that is to reach a target.
-    const dropTo = ([[, hip, , ankle], left]) => {
+    const dropTo = ([[, hip, , ankle], left, free]) => {
       const way = difference(difference(hip[0], ankle[0]), left);
       const height = upward * way[up];
-      // Not straighter than in the clip, or nearly straight.
-      const reach = clamp(floor(sqrt(squareOf(difference(hip[0], ankle[0])))), farthest - (farthest >> 7), farthest);
       way[up] = 0;
-      return height - floor(sqrt(max(0, reach ** 2 - squareOf(way))));
+      return height - floor(sqrt(max(0, free ** 2 - squareOf(way))));
     };
     // The axis about which the knee bends to a sine of `wanted`, after whether it is square to both bones. The bend of the pose stays, and what is added is about the axis that was seen, as
     // nearly straight legs bend to any side; a bend the other way does not stay. One that was never bent bends across the way to its target.
@@ -382,8 +385,20 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const reachDown = (wanted, sunk) => {
       if (!wanted && !sunk) return;
       const raised = (place, by) => place.map((x, axis) => (axis === up ? (x + by) | 0 : x));
-      const [places, way] = wanted ?? [legIn().map(([place, turn]) => [raised(place, sunk), turn]), ORIGIN];
-      solve(places.map(([place, turn]) => [raised(place, -sunk), turn]), sum(places[3][0], way));
+      const moved = (places, by) => places.map(([place, turn]) => [raised(place, by), turn]);
+      const own = () => {
+        const places = moved(legIn(), sunk);
+        return [places, ORIGIN, freeOf(places, ORIGIN)];
+      };
+      const [places, way, free] = wanted ?? own();
+      const target = sum(places[3][0], way);
+      const lowered = moved(places, -sunk);
+      const [, [hip]] = lowered;
+      const [aim, distance] = directionOf(difference(target, hip));
+      const soft = max(farthest - (farthest >> 7) - free, farthest >> 8);
+      const over = min(distance - free, 0xffff);
+      // Past the free distance it comes less and less far.
+      solve(lowered, over > 0 ? sum(hip, times(aim, free + floor((over * soft) / (over + soft)))) : target);
     };
     return [convert, length, wayOf, enter, update, dropTo, reachDown];
   };
@@ -468,7 +483,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const wanted = feet.map(([, , , , update], foot) => update(axes, found[foot], !animator.left, elapsed));
       // 2 cm, at most.
       const most = shifted(shifted(min(floor((2000000 * 256) / round(rig.cmPerUnit * 1e6)), 2 ** 30), exponent + 8), shift);
-      sunk = max(floor((sunk * RISE) / (RISE + elapsed)), min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0))));
+      const goal = min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0)));
+      sunk = goal + trunc(((sunk - goal) * DROP) / (DROP + elapsed));
       const drop = carrier ? sunk : 0;
       if (drop) pose[carrier.first + carrier.kinds.lastIndexOf(up)] -= upward * shifted(drop, -shift);
       feet.forEach((foot, index) => foot[6](wanted[index], upward * drop));

@@ -54,11 +54,12 @@ pub(super) struct Foot<'a> {
     upside_down: bool,
 }
 
-/// The places of a limb, and where its end is to be: in figure units.
+/// The places of a limb, where its end is to be, and its [`Limb::free`] distance: in figure units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub(super) places: [Joint; 4],
     pub(super) target: Vector,
+    pub(super) free: i32,
 }
 
 impl<'a> Foot<'a> {
@@ -261,10 +262,7 @@ impl<'a> Foot<'a> {
             self.rest();
             self.let_go();
         }
-        let [since, _] = self.since_us;
-        let part = (1 << 15) - part(since, self.step_us);
-        let target = if self.held().is_some() { target } else { self.limb.within(&places, target, part) };
-        (way != [0; 3]).then_some(Wanted { places, target })
+        (way != [0; 3]).then(|| Wanted { places, target, free: self.limb.free(&places, target) })
     }
 
     /// Whether a foot that is not held is to be held from now on.

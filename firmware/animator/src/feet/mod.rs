@@ -15,9 +15,9 @@ use frame::Frame;
 use heapless::Vec;
 use pantin::Bank;
 
-/// A figure that went down comes up by a fraction of its way in each update, nearly two thirds of it in this time: its legs are nearly straight then, and
-/// bend by the root of the way.
-const RISE_US: i64 = 100_000;
+/// A figure goes down and comes up by a fraction of its way in each update, nearly two thirds of it in this time: nearly straight legs bend by the root of the
+/// way.
+const DROP_US: i64 = 50_000;
 
 /// The feet of a [`crate::Character`], to be lent to it: [`crate::Character::lend_feet`]. About 2 kB.
 #[derive(Clone, Debug, Default)]
@@ -133,19 +133,12 @@ impl<'a> Feet<'a> {
     /// How far the figure's carrier goes down so that the legs reach, in figure units.
     fn drop(&self, wanted: &[Option<Wanted>; FEET], up: usize, negative: bool) -> i32 {
         let mut drop = 0;
-        for (foot, wanted) in self.feet.iter().zip(wanted) {
-            let Some(Wanted { places: [_, hip, _, ankle], target }) = wanted else { continue };
-            let square = |v: [i32; 3]| v.map(|x| i64::from(x).pow(2));
+        for wanted in wanted {
+            let Some(Wanted { places: [_, hip, ..], target, free }) = wanted else { continue };
             let way = pantin_math::vector::sub(hip.place, *target);
-            let [x, y, z] = square(pantin_math::vector::sub(hip.place, ankle.place));
-            let own = (x + y + z).unsigned_abs().isqrt() as i64;
-            // Not straighter than in the clip, or nearly straight.
-            let greatest = i64::from(foot.limb.greatest());
-            let most = own.max(greatest - greatest / 128).min(greatest);
             let height = way.get(up).map_or(0, |height| i64::from(if negative { -*height } else { *height }));
-            let [x, y, z] = square(way);
-            let flat = x + y + z - height * height;
-            let reached = (most * most - flat).max(0).unsigned_abs().isqrt() as i64;
+            let flat = way.iter().map(|x| i64::from(*x).pow(2)).sum::<i64>() - height * height;
+            let reached = (i64::from(*free).pow(2) - flat).max(0).unsigned_abs().isqrt() as i64;
             drop = drop.max(height - reached);
         }
         let most = self.feet.first().map_or(0, |foot| shifted(self.most_drop, foot.limb.shift()));
@@ -205,8 +198,8 @@ pub(crate) fn hold<'a>(feet: &mut Feet<'a>, animator: &mut Animator<'a, '_>, now
     for ((foot, contact), wanted) in feet.feet.iter_mut().zip(contacts).zip(&mut wanted) {
         *wanted = foot.update(animator.pose, &frame, contact, calm, now.elapsed_us);
     }
-    let left = i64::from(feet.sunk) * RISE_US / (RISE_US + i64::from(now.elapsed_us));
-    let drop = feet.drop(&wanted, up, negative).max(left as i32);
+    let goal = feet.drop(&wanted, up, negative);
+    let drop = goal + (i64::from(feet.sunk - goal) * DROP_US / (DROP_US + i64::from(now.elapsed_us))) as i32;
     feet.sunk = drop;
     let down = |place: [i32; 3], by: i32| {
         let mut place = place;
@@ -228,15 +221,15 @@ pub(crate) fn hold<'a>(feet: &mut Feet<'a>, animator: &mut Animator<'a, '_>, now
         let own = || {
             let places = foot.limb.places(animator.pose);
             let [.., ankle] = places;
-            Wanted {
-                places: places.map(|joint| crate::chain::Joint { place: down(joint.place, -drop), ..joint }),
-                target: down(ankle.place, -drop),
-            }
+            let places = places.map(|joint| crate::chain::Joint { place: down(joint.place, -drop), ..joint });
+            let target = down(ankle.place, -drop);
+            Wanted { places, target, free: foot.limb.free(&places, target) }
         };
-        let Some(Wanted { mut places, target }) = wanted.or_else(|| (drop > 0).then(own)) else { continue };
+        let Some(Wanted { mut places, target, free }) = wanted.or_else(|| (drop > 0).then(own)) else { continue };
         for joint in &mut places {
             joint.place = down(joint.place, drop);
         }
+        let target = foot.limb.within(&places, free, target);
         foot.limb.solve_from(&places, animator.pose, target, None);
     }
     Ok(())
