@@ -95,6 +95,16 @@ fn bytes_of_a_line_with_motion() {
 }
 
 #[test]
+fn datagrams_with_poses() {
+    holds("live_vmc", FILES);
+}
+
+#[test]
+fn a_stream_with_poses() {
+    holds("live_bvh", FILES);
+}
+
+#[test]
 fn flash_with_clips() {
     holds("store_open", CLIPS);
 }

@@ -6,6 +6,7 @@ mod faces;
 pub mod fix;
 mod imports;
 pub mod lines;
+pub mod live;
 pub mod mutants;
 pub mod noise;
 mod sources;
@@ -29,7 +30,7 @@ pub struct FuzzTarget {
 const CLIPS: &[&str] = &["ptn"];
 
 /// All entry points.
-pub const FUZZ_TARGETS: [FuzzTarget; 22] = [
+pub const FUZZ_TARGETS: [FuzzTarget; 24] = [
     FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "keys_play", run: clips::keys_play, words: &[], vectors: &[], made: clips::key_clips },
@@ -38,6 +39,8 @@ pub const FUZZ_TARGETS: [FuzzTarget; 22] = [
     FuzzTarget { name: "animator", run: animator::animator, words: &[], vectors: &[], made: animator::tables },
     FuzzTarget { name: "stream_play", run: streams::stream_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "link_receive", run: lines::link_receive, words: &[], vectors: &[], made: lines::streams },
+    FuzzTarget { name: "live_vmc", run: live::vmc, words: &live::BONES, vectors: &[], made: live::datagrams },
+    FuzzTarget { name: "live_bvh", run: live::bvh, words: &imports::BVH_WORDS, vectors: &[], made: live::streams },
     FuzzTarget { name: "store_open", run: lines::store_open, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "update_receive", run: lines::update_receive, words: &[], vectors: &[], made: lines::updates },
     FuzzTarget { name: "face_model", run: faces::face_model, words: &[], vectors: &[], made: faces::models },
