@@ -4,6 +4,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
+use std::time::{Duration, Instant};
 
 use harness::{build, simulator};
 use pantin::Clip;
@@ -325,4 +326,58 @@ fn pantin_stream_sends_a_body_that_comes_on_its_standard_input() {
         let words = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success() && words.contains(wanted), "{words}");
     }
+}
+
+/// What is allowed until the pose is shown, on a machine that is busy.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+#[test]
+fn pantin_stream_sends_a_body_that_comes_by_datagrams() {
+    let bytes = std::fs::read(&CLIP.1).unwrap();
+    let clip = Clip::new_checked(&bytes).unwrap();
+    let datagram = datagram(20, true);
+    let mut body = Body::vmc(&clip).unwrap();
+    body.receive(SocketAddr::from(([127, 0, 0, 1], 1)), &datagram);
+    let (wanted, bounds) = (body.pose(), body.posing().raw_errors(1.0, 0.5, 0.02));
+    let [socket, vmc] = [0; 2].map(|_| UdpSocket::bind("127.0.0.1:0").unwrap());
+    let (to, port) = (format!("udp:{}@38400", socket.local_addr().unwrap()), vmc.local_addr().unwrap().port());
+    drop(vmc);
+    let stream = Command::new(build::host_tool().unwrap())
+        .args(["stream", "--live", &format!("vmc:{port}"), "--to", &to])
+        .arg(&CLIP.1)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let program = UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.set_read_timeout(Some(Duration::from_millis(15))).unwrap();
+    let (mut states, mut pose) = (vec![Channel::default(); clip.rig().channels()], vec![0; clip.rig().channels()]);
+    let mut link = Link::<QUEUE_PACKETS>::new(clip.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::<MAX_PACKET>::new();
+    let (started, mut packet) = (Instant::now(), [0; 2048]);
+    let shows = |link: &Link<QUEUE_PACKETS>| {
+        let values = link.channels().iter().map(|channel| channel.state().map(|state| state[0]));
+        link.is_synced()
+            && values
+                .zip(&wanted)
+                .zip(&bounds)
+                .all(|((value, wanted), bound)| value.is_some_and(|value| value.wrapping_sub(*wanted).abs() <= *bound))
+    };
+    while !shows(&link) {
+        assert!(started.elapsed() < PATIENCE, "the pose does not come: {:?}", link.counts());
+        // Before the port is open, and where the line is full, there is nobody to hear it.
+        let _ = program.send_to(&datagram, ("127.0.0.1", port));
+        if let Ok(len) = socket.recv(&mut packet) {
+            for &byte in &packet[..len] {
+                if let Some(packet) = receiver.push(byte) {
+                    link.receive(&packet).unwrap();
+                }
+            }
+            link.step();
+        }
+    }
+    let stopped = Command::new("kill").args(["-INT", &stream.id().to_string()]).status().unwrap();
+    assert!(stopped.success());
+    let output = stream.wait_with_output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(words.contains("its poses are shown") && words.contains("packets,") && !words.contains("left out"), "{words}");
 }
