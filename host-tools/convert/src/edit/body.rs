@@ -8,7 +8,7 @@
 //! A source whose rest pose faces another way than the body's is turned by quarters of a turn, so that figures which were built facing different ways face one way.
 //!
 //! The length of the legs scales the way, and the hips' height over the ankles. Near the ground, two-bone inverse kinematics puts an ankle where the source's is
-//! from its thigh, in that scale, and to a height that is off by at most 0.7 cm over the ground of the body, whose height is 0. In the air a leg points where
+//! from its thigh, in that scale, and to a height that is off by at most 0.7 cm over the ground on which the body stands in its own file. In the air a leg points where
 //! the source's does. Within 0.7 cm nothing is corrected, because a leg that is nearly straight would have to bend far for it.
 
 use super::display::{Pose, add, aim, cross, dot, norm, pose, stands, subtract, transposed};
@@ -200,13 +200,9 @@ impl<'a> Plan<'a> {
         if quarters != 0 {
             source = Figure::new(motion, joints, &to_up)?;
         }
-        let least = (0..motion.frames).flat_map(|frame| {
-            let pose = rotated(pose(motion, Some(frame)), &to_up);
-            LEGS.map(|leg| dot(pose[source.joints[leg[2]]].1, vertical))
-        });
-        let least = least.fold(f64::MAX, f64::min);
+        let least = least_ankle(motion, &source, &to_up, vertical);
         let same = quarters == 0 && is_same(&motion.rig, &body.rig);
-        let ankles = [least, if same && !figure.upright { least } else { ankle_height(&body.rig, &figure, vertical) }];
+        let ankles = [least, if same { least } else { stands_at(body, &figure, vertical) }];
         let mut plan = Plan {
             scale: figure.leg / source.leg,
             turns: Vec::new(),
@@ -514,6 +510,22 @@ fn hangs_together(rig: &Rig, joints: &[usize; 15]) -> Result<()> {
         require!(at.is_some(), Error::setting(Setting::Body, text));
     }
     Ok(())
+}
+
+/// The least height of a figure's ankles over all frames.
+fn least_ankle(motion: &Motion, figure: &Figure, to_up: &Matrix, vertical: [f64; 3]) -> f64 {
+    let of = |frame: usize| {
+        let pose = rotated(pose(motion, Some(frame)), to_up);
+        LEGS.map(|leg| dot(pose[figure.joints[leg[2]]].1, vertical)).into_iter().fold(f64::MAX, f64::min)
+    };
+    (0..motion.frames).map(of).fold(f64::MAX, f64::min)
+}
+
+/// The height of the body's ankles when it stands: as low as they come in its own file, so that what is put on it stands where its own motions do. In a file in
+/// which the body does not stand on the ground, over a ground of height 0.
+fn stands_at(body: &Motion, figure: &Figure, vertical: [f64; 3]) -> f64 {
+    let least = least_ankle(body, figure, &IDENTITY, vertical);
+    if (0.0..figure.leg / 2.0).contains(&least) { least } else { ankle_height(&body.rig, figure, vertical) }
 }
 
 /// The height of the ankles at rest over the lowest end of a foot.

@@ -15,7 +15,7 @@ use pantin::Up;
 use pantin_convert::edit::find_loop::{self, Cut};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
-use pantin_convert::{Coding, Length, Level, Note, Options, Prepared, Recipe, UseKeys, shared_coding};
+use pantin_convert::{Coding, Length, Level, Note, NoteKind, Options, Prepared, Recipe, UseKeys, shared_coding};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// with a row of names (.csv, .tsv). For a bank also a list (.list): a motion a line, with its own --name, --animation, --fps, --cm-per-unit,
-    /// --skeleton and changes, as in `walk.bvh --from 65 --to 129 --loop`
+    /// --skeleton, --max-error, --mean-error, --max-rotation-error and changes, as in `walk.bvh --from 65 --to 129 --loop --max-error 1.5cm`
     pub(super) input: PathBuf,
     /// More motions, each of which gets a clip of its name in the folder --output, or beside it
     #[arg(value_name = "MOTION", conflicts_with = "list")]
@@ -249,12 +249,18 @@ impl Arguments {
         Arguments { input, more: Vec::new(), output: Some(output), ..self.clone() }
     }
 
-    /// Takes the options of a list's line, which go before those of the command.
-    pub(super) fn take_line(&mut self, line: ListEntry) {
+    /// Takes the options of a list's line, which go before those of the command. Refuses a bound beside one of the command that excludes it.
+    pub(super) fn take_line(&mut self, line: ListEntry) -> Result<()> {
+        let bounded = line.max_error.is_some() || line.mean_error.is_some() || line.max_rotation_error.is_some();
+        ensure!(!bounded || !self.channels.is_given(), "the command bounds channels one by one: leave the line's bound out");
+        self.max_error = line.max_error.or(self.max_error);
+        self.mean_error = line.mean_error.or(self.mean_error);
+        self.max_rotation_error = line.max_rotation_error.or(self.max_rotation_error);
         (self.edits, self.animation) = (line.edits, line.animation);
         self.fps = line.fps.or(self.fps);
         self.cm_per_unit = line.cm_per_unit.or(self.cm_per_unit);
         self.skeleton = line.skeleton.or(self.skeleton.take());
+        Ok(())
     }
 
     /// The same for one file of a folder, without messages.
@@ -477,8 +483,8 @@ pub(super) fn say_of_each<'a>(all: impl Iterator<Item = (&'a str, &'a [Note])>) 
         motions += 1;
         for note in notes {
             let sentence = words::line(note);
-            // Each warning names its file.
-            let place = match note.is_warning() {
+            // Each warning names its file, but for those about a body, whose file many lines name.
+            let place = match note.is_warning() && note.kind != NoteKind::Retarget {
                 true => sentences.len(),
                 false => *places.entry(sentence.clone()).or_insert(sentences.len()),
             };

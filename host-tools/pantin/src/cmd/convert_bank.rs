@@ -155,7 +155,7 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
             let name = line.name.clone().map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
             let label = format!("{place}: {}", line.motion.display());
             let mut task = task(line.motion.clone(), name, label);
-            task.arguments.take_line(line);
+            task.arguments.take_line(line).with_context(|| place.clone())?;
             task.line = Some(place);
             Ok(task)
         };

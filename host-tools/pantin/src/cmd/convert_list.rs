@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! # motion, and what is to be done with it
-//! walk.bvh  --from 65 --to 129 --loop
+//! walk.bvh  --from 65 --to 129 --loop --max-error 1.5cm
 //! bow.bvh
 //! "my kick.bvh"  --name kick --from 1.0s --to 4.3s
 //! ```
 
-use super::channel_bound::ChannelBound;
+use super::channel_bound::{ChannelBound, degrees};
 use super::edits::Edits;
 use anyhow::{Context, Result, anyhow, ensure};
 use clap::Parser;
-use pantin_convert::input;
+use pantin_convert::{Length, input};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a list.
@@ -41,11 +41,16 @@ pub struct ListEntry {
     /// What is done with it.
     #[command(flatten)]
     pub edits: Edits,
+    /// Its bounds, before those of the command.
+    #[arg(long, value_parser = str::parse::<Length>)]
+    pub max_error: Option<Length>,
+    #[arg(long, value_parser = str::parse::<Length>)]
+    pub mean_error: Option<Length>,
+    #[arg(long, value_parser = degrees)]
+    pub max_rotation_error: Option<f64>,
+    /// Refused with its reason.
     #[command(flatten)]
-    bounds: ChannelBound,
-    /// Refused with its reason, as what is above: the proposals of --find-loop have it.
-    #[arg(long)]
-    max_error: Option<String>,
+    channels: ChannelBound,
 }
 
 /// Whether an input is a list, by its name.
@@ -70,8 +75,10 @@ pub fn read(path: &Path) -> Result<Vec<(String, ListEntry)>> {
             let first = said.lines().next().unwrap_or_default();
             anyhow!("{place}: {}", first.trim_start_matches("error: "))
         })?;
-        let bounded = line.bounds.is_given() || line.max_error.is_some();
-        ensure!(!bounded, "{place}: bounds are for all motions: they belong to the command, not to a line");
+        ensure!(
+            !line.channels.is_given(),
+            "{place}: bounds of channels are for all motions: they belong to the command, not to a line"
+        );
         line.motion = folder.join(&line.motion);
         line.edits.read_from(folder);
         line.skeleton = line.skeleton.map(|path| folder.join(path));

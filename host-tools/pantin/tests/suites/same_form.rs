@@ -164,6 +164,14 @@ fn a_list_gives_each_motion_a_cut_of_its_own() {
     let first = bank.open(&bank.entries().next().unwrap()).unwrap();
     assert_eq!(first.rig().scalars().map(|scalar| scalar.name().to_owned()).collect::<Vec<_>>(), ["smile"]);
     assert!(clips.iter().all(|(.., exponent)| *exponent == clips[0].2), "{clips:?}");
+    // A line's bounds go before the command's: the same motion three times.
+    let list = "my walk.keys --name tight --max-error 0.2cm\nmy walk.keys --name loose\nmy walk.keys --name turns --max-rotation-error 2\n";
+    std::fs::write(path("captures/bounds.list"), list.replace("my walk.keys", "\"my walk.keys\"")).unwrap();
+    succeeds(&["captures/bounds.list".into()], &["--same-form", "--max-error", "2cm", "-o", "bounds.ptb"], folder.path());
+    let bytes = std::fs::read(path("bounds.ptb")).unwrap();
+    let bank = pantin::Bank::new_checked(&bytes).unwrap();
+    let sizes: Vec<usize> = bank.entries().map(|entry| entry.bytes().len()).collect();
+    assert!(sizes[0] > sizes[1] && sizes[2] > sizes[1], "{sizes:?}");
     let refused = |list: &str, options: &[&str]| {
         std::fs::write(path("wrong.list"), list).unwrap();
         refusal(&["wrong.list".into()], &[options, &["-o", "wrong.ptb"]].concat(), folder.path())
@@ -175,6 +183,8 @@ fn a_list_gives_each_motion_a_cut_of_its_own() {
         ("captures/none.keys\n", &[], "wrong.list:1: captures/none.keys"),
         ("captures/run.keys\n\ncaptures/run.keys --name b --from 9000\n", &[], "wrong.list:3: captures/run.keys"),
         ("captures/run.keys\n", &["--from", "3"], "leave those options out"),
+        ("captures/run.keys --max-accel-error 3\n", &[], "wrong.list:1: bounds of channels are for all motions"),
+        ("captures/run.keys --max-error 1cm\n", &["--exact"], "wrong.list:1: the command bounds channels one by one"),
     ] {
         let said = refused(list, options);
         assert!(said.contains(why) && !path("wrong.ptb").exists(), "{list}: {said}");

@@ -17,6 +17,9 @@ const STEP: f64 = 0.2;
 /// What a cm/s^2 costs by which the figure is accelerated more than this.
 const ACCELERATION: f64 = 0.02;
 const WITH_EASE: f64 = 1000.0;
+/// What a cm costs by which the figure goes back on its way, and the speed below which it has none, in cm a second.
+const BACK: f64 = 2.0;
+const STANDS: f64 = 20.0;
 /// What a cm costs by which a foot moves over the ground.
 const DRAG: f64 = 2.0;
 /// What a cm of a detour of a foot costs, in cm over the ground.
@@ -104,8 +107,8 @@ struct Change<'a> {
     turn: [f64; 2],
     /// For each foot whether it is on the ground in both clips, and, if it is in one, how far it is in the old clip from where it is in the new one.
     grounded: Vec<(bool, Option<[f64; 2]>)>,
-    /// The way to a foot that is on the ground in both clips, which the figure glides.
-    glide: [f64; 2],
+    /// The way to a foot that is on the ground in both clips: the figure comes there.
+    way: Option<[f64; 2]>,
 }
 
 impl<'a> Change<'a> {
@@ -116,8 +119,7 @@ impl<'a> Change<'a> {
             across += q[0] * p[1] - q[1] * p[0];
         }
         let (sin, cos) = across.atan2(along).sin_cos();
-        let mut change =
-            Change { from, to, at, start, frames: frames.max(1), turn: [cos, sin], grounded: Vec::new(), glide: [0.0; 2] };
+        let mut change = Change { from, to, at, start, frames: frames.max(1), turn: [cos, sin], grounded: Vec::new(), way: None };
         let foot = |(old, new): (&Option<usize>, &Option<usize>)| {
             let way = |joint| {
                 let [[x, y, _], _] = change.differs(joint);
@@ -127,7 +129,7 @@ impl<'a> Change<'a> {
         };
         let grounded: Vec<_> = from.feet[at].iter().zip(&to.feet[start]).map(foot).collect();
         let both = grounded.iter().filter_map(|&(both, way)| way.filter(|_| both));
-        change.glide = both.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or_default();
+        change.way = both.min_by(|a, b| far(*a).total_cmp(&far(*b)));
         change.grounded = grounded;
         change
     }
@@ -137,21 +139,61 @@ impl<'a> Change<'a> {
         [x * cos - y * sin, x * sin + y * cos]
     }
 
-    /// What the figure's horizontal velocity changes by, in cm a second, at the speeds at which the clips play.
-    fn velocity_change(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+    /// The figure's horizontal velocity before and after, in cm a second, at the speeds at which the clips play.
+    fn velocities(&self, [from, to]: [f64; 2]) -> [[f64; 2]; 2] {
         let mean = |pose: &[[f64; 6]], axis: usize| pose.iter().map(|joint| joint[axis]).sum::<f64>() / pose.len().max(1) as f64;
         let (old, new) = (&self.from.poses[self.at], &self.to.poses[self.start]);
-        let [x, y] = self.turned([mean(new, 3), mean(new, 4)]);
-        [to * x - from * mean(old, 3), to * y - from * mean(old, 4)]
+        [[3, 4].map(|axis| from * mean(old, axis)), self.turned([3, 4].map(|axis| to * mean(new, axis)))]
+    }
+
+    /// What the velocity changes by.
+    fn velocity_change(&self, speeds: [f64; 2]) -> [f64; 2] {
+        let [[x, y], [u, v]] = self.velocities(speeds);
+        [u - x, v - y]
+    }
+
+    fn seconds(&self) -> f64 {
+        self.frames as f64 * self.to.frame_time
+    }
+
+    /// Where the figure comes beside its new way, in cm: to a foot that is on the ground in both clips, or to where its velocity takes it as it dies out.
+    fn arrives(&self, speeds: [f64; 2]) -> [f64; 2] {
+        self.way.unwrap_or_else(|| self.coast(speeds))
+    }
+
+    /// A velocity that dies out takes the figure a third of the way that it would go.
+    fn coast(&self, speeds: [f64; 2]) -> [f64; 2] {
+        self.velocity_change(speeds).map(|change| -change * self.seconds() / 3.0)
+    }
+
+    /// What the figure glides beside that, in cm.
+    fn glide(&self, speeds: [f64; 2]) -> [f64; 2] {
+        let ([x, y], [a, b]) = (self.arrives(speeds), self.coast(speeds));
+        [x - a, y - b]
     }
 
     /// The greatest acceleration of the figure in cm/s^2: where it begins, by its change of velocity and by its glide, or where it ends, by the glide.
     fn acceleration(&self, speeds: [f64; 2]) -> f64 {
-        let seconds = self.frames as f64 * self.to.frame_time;
-        let [glide, change] = [self.glide, self.velocity_change(speeds)];
+        let seconds = self.seconds();
+        let [glide, change] = [self.glide(speeds), self.velocity_change(speeds)];
         let at = |axis: usize| [6.0 * glide[axis] / seconds.powi(2), 2.0 * change[axis] / seconds];
         let ([a, b], [x, y]) = (at(0), at(1));
         (a + b).hypot(x + y).max(a.hypot(x))
+    }
+
+    /// How far the figure goes back, against its velocity before or after, whichever is greater, in cm.
+    fn back(&self, speeds: [f64; 2]) -> f64 {
+        let ([before, after], glide, seconds) = (self.velocities(speeds), self.glide(speeds), self.seconds());
+        let ahead = if far(after) > far(before) { after } else { before };
+        let back = |frame: usize| {
+            let left = 1.0 - (frame as f64 - 0.5) / self.frames as f64;
+            let step = |axis: usize| {
+                let velocity = after[axis] + (before[axis] - after[axis]) * left * left;
+                velocity * seconds + 6.0 * glide[axis] * left * (1.0 - left)
+            };
+            -(step(0) * ahead[0] + step(1) * ahead[1]) / far(ahead) / self.frames as f64
+        };
+        if far(ahead) < STANDS { 0.0 } else { (1..=self.frames).map(|frame| back(frame).max(0.0)).sum() }
     }
 
     /// By how much a joint's place and velocity differ in the old clip from those in the new one.
@@ -170,15 +212,16 @@ impl<'a> Change<'a> {
             let [place, velocity] = self.differs(joint);
             size(place) + FORESIGHT * size(velocity)
         };
-        (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64 + self.feet() + ACCELERATION * hasty
+        let poses = (0..joints).map(apart).sum::<f64>() / joints.max(1) as f64;
+        poses + self.feet(speeds) + ACCELERATION * hasty + BACK * self.back(speeds)
     }
 
     /// What feet cost: those that are on the ground in one clip alone or elsewhere, and those that move over the ground.
-    fn feet(&self) -> f64 {
-        let glide = self.glide;
+    fn feet(&self, speeds: [f64; 2]) -> f64 {
+        let (glide, [a, b]) = (self.glide(speeds), self.arrives(speeds));
         let mut cost = GLIDE * far(glide);
         for (foot, &(both, way)) in self.grounded.iter().enumerate() {
-            let rest = way.map_or(0.0, |[x, y]| far([x - glide[0], y - glide[1]]));
+            let rest = way.map_or(0.0, |[x, y]| far([x - a, y - b]));
             let held = both && rest < HELD_CM;
             cost += STEP * rest + if way.is_none() || held { 0.0 } else { OTHER_FOOT_CM };
             let lift = if way.is_none() || held { 0.0 } else { (rest / 4.0).min(LIFT_CM) };
@@ -284,7 +327,7 @@ pub(super) fn best(
 pub(super) fn acceleration(from: &Clip, to: &Clip, pairs: &[(usize, usize)], length: usize, speeds: [f64; 2]) -> [f64; 3] {
     let changes = pairs.iter().map(|&(at, start)| {
         let change = Change::new((from, at), (to, start), length);
-        [change.acceleration(speeds), far(change.velocity_change(speeds)), far(change.glide)]
+        [change.acceleration(speeds), far(change.velocity_change(speeds)), far(change.glide(speeds))]
     });
     changes.min_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default()
 }
