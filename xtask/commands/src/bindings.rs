@@ -17,6 +17,7 @@ mod talk;
 mod turns;
 mod tutorial;
 mod uno;
+mod xiaozhi;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -228,6 +229,7 @@ impl Bindings {
         steps.run("feet of characters against the crate's", || animator::feet(&folder));
         steps.run("faces and bodies on the test display of LVGL", || lvgl::run(&folder));
         steps.run("a face that speaks on the test display of LVGL", lvgl::speech);
+        steps.run("a display for xiaozhi on the test display of LVGL", || xiaozhi::run(&folder));
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(&folder));

@@ -40,8 +40,8 @@ pub fn exported(clip: &Path, bytes: &[u8]) -> Result<[&'static str; 2]> {
 pub fn archives(out: &Path) -> Result<()> {
     let bindings = paths::root().join("bindings");
     let lvgl = tempfile::tempdir().context("a folder for an archive")?;
-    // Beside each other as in the repository: one's page names files of the other.
-    for name in ["lvgl", "c"] {
+    // Beside each other as in the repository: their pages name files of the others.
+    for name in ["lvgl", "c", "xiaozhi"] {
         arduino::copy(&bindings.join(name), &lvgl.path().join("pantin").join(name))?;
     }
     write(&out.join(LVGL), &archive(lvgl.path())?)?;
@@ -83,7 +83,14 @@ mod tests {
             zip::ZipArchive::new(file).unwrap().file_names().map(str::to_owned).collect::<Vec<_>>()
         };
         let [lvgl, arduino] = [LVGL, ARDUINO].map(names);
-        for name in ["lvgl/README.md", "lvgl/src/lv_pantin.c", "c/src/pantin_face.c", "c/src/pantin_talk.h", "c/LICENSE-MIT"] {
+        for name in [
+            "lvgl/README.md",
+            "lvgl/src/lv_pantin.c",
+            "c/src/pantin_face.c",
+            "c/src/pantin_talk.h",
+            "c/LICENSE-MIT",
+            "xiaozhi/src/pantin_display.h",
+        ] {
             assert!(lvgl.contains(&format!("pantin/{name}")), "{name}");
         }
         for name in ["library.properties", "src/pantin_face.c", "src/PantinFace.h", "examples/Face/hello.h"] {
@@ -91,7 +98,7 @@ mod tests {
         }
         assert!(lvgl.contains(&"pantin/lvgl/examples/speech.c".to_owned()));
         assert!(lvgl.iter().chain(&arduino).all(|name| !name.contains("/tests/")));
-        for name in ["c", "lvgl"] {
+        for name in ["c", "lvgl", "xiaozhi"] {
             let mut zip = zip::ZipArchive::new(std::fs::File::open(out.path().join(LVGL)).unwrap()).unwrap();
             let page = std::io::read_to_string(zip.by_name(&format!("pantin/{name}/README.md")).unwrap()).unwrap();
             assert!(!page.contains("](../../") && !page.contains("](tests/"), "{name}");

@@ -15,7 +15,7 @@ use crate::wheels::addon;
 pub const NAMES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /// The folders of `bindings` that are copied or packed.
-pub const FOLDERS: [&str; 6] = ["c", "arduino", "lvgl", "micropython", "python", "blender"];
+pub const FOLDERS: [&str; 7] = ["c", "arduino", "lvgl", "xiaozhi", "micropython", "python", "blender"];
 
 /// Looks into the folders, the Arduino library and the Blender add-on; the step of the wheel looks into that.
 pub fn run(folder: &TempDir) -> Result<()> {

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, ensure};
 use harness::{build, paths};
+use pantin_images::palette::Rgb;
 use serde_json::Value;
 pub use speech::speech;
 use tempfile::TempDir;
@@ -28,7 +29,7 @@ pub struct Build {
 }
 
 /// For this machine.
-const HERE: Build = Build { name: "here", compilers: [Some("gcc"), None], options: &["-O1"], settings: "tests" };
+pub(super) const HERE: Build = Build { name: "here", compilers: [Some("gcc"), None], options: &["-O1"], settings: "tests" };
 
 /// Builds LVGL and the widget, and runs the tests.
 pub fn run(folder: &TempDir) -> Result<()> {
@@ -76,17 +77,34 @@ fn without_feet(folder: &TempDir, character: &Path) -> Result<PathBuf> {
     Ok(bank)
 }
 
-/// Builds one of the tests or examples, `tests/NAME.c`, with the widget, LVGL and all our sources for this machine.
-fn program(source: &str, options: &[&str]) -> Result<PathBuf> {
+/// Builds a test or an example in C, `tests/NAME.c`, or in C++, `NAME.cc`, with the widget, LVGL and all our sources for this machine. Paths begin in the
+/// folder of the widget.
+pub(super) fn program(source: &str, options: &[&str]) -> Result<PathBuf> {
     let (lvgl, library) = (sources()?, library(&HERE)?);
     let program = folder(&HERE)?.join(Path::new(source).file_stem().context("a source has a name")?);
+    // No option can choose the standard of both languages. By default gcc compiles C++17, and C17.
+    let (standard, libraries) =
+        if source.ends_with(".cc") { (&[][..], &["-lm", "-lstdc++"][..]) } else { (&["-std=gnu99"][..], &["-lm"][..]) };
     let mut gcc = Command::new("gcc");
-    gcc.current_dir(home()).args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE"]).args(options);
+    gcc.current_dir(home()).args(standard).args(["-Wall", "-Wextra", "-Werror", "-DLV_CONF_INCLUDE_SIMPLE"]).args(options);
     gcc.args(["-Itests", "-Isrc", "-I../c/src", "-isystem"]).arg(&lvgl).arg(source);
     gcc.args(["src/lv_pantin.c", "src/lv_pantin_body.c"]).args(SOURCES.map(|source| Path::new("../c").join(source)));
-    gcc.arg(&library).arg("-lm").arg("-o").arg(&program);
+    gcc.arg(&library).args(libraries).arg("-o").arg(&program);
     output(gcc)?;
     Ok(program)
+}
+
+/// The colours of pixels of RGB565, low byte first.
+pub(super) fn colours(bytes: &[u8]) -> Vec<Rgb> {
+    let colour = |pixel: &[u8]| {
+        let raw = u16::from_le_bytes([pixel[0], pixel[1]]);
+        let wide = |shift: u16, bits: u16| {
+            let value = u32::from(raw >> shift & ((1 << bits) - 1));
+            (value * 255 / ((1 << bits) - 1)) as u8
+        };
+        [wide(11, 5), wide(5, 6), wide(0, 5)]
+    };
+    bytes.chunks_exact(2).map(colour).collect()
 }
 
 /// The folder of the widget.

@@ -10,7 +10,6 @@ use harness::paths;
 use pantin_images::animation::Animation;
 use pantin_images::gif::Gif;
 use pantin_images::image::Image;
-use pantin_images::palette::Rgb;
 
 use super::output;
 
@@ -108,16 +107,7 @@ fn judge(phonemes: &[Phoneme], jaws: &[u32]) -> Result<()> {
 
 /// Turns RGB565 pictures into a GIF. Returns their number.
 fn video(pictures: &Path, gif: &Path) -> Result<usize> {
-    let bytes = std::fs::read(pictures)?;
-    let pixels = bytes.chunks_exact(2).map(|pixel| {
-        let raw = u16::from_le_bytes([pixel[0], pixel[1]]);
-        let wide = |shift: u16, bits: u16| {
-            let value = u32::from(raw >> shift & ((1 << bits) - 1));
-            (value * 255 / ((1 << bits) - 1)) as u8
-        };
-        [wide(11, 5), wide(5, 6), wide(0, 5)]
-    });
-    let pixels: Vec<Rgb> = pixels.collect();
+    let pixels = super::colours(&std::fs::read(pictures)?);
     let mut colours = pixels.clone();
     colours.sort_unstable();
     colours.dedup();
