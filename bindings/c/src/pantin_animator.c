@@ -391,7 +391,7 @@ static pantin_result go_to(pantin_track *t, uint32_t frame) {
 
 static void set_speed(pantin_track *t, int32_t speed) {
     t->speed = (int32_t)clamp(speed, -4 * PANTIN_SPEED, 4 * PANTIN_SPEED);
-    t->ended = 0;
+    t->ended = t->stands = 0;
 }
 
 static pantin_result start_player(pantin_track *t, pantin_channel *moving, size_t moving_room, int32_t *values, size_t value_room) {
@@ -425,7 +425,7 @@ static pantin_result start_track(pantin_track *t, const pantin_clip *clip, size_
 static pantin_result seek_track(pantin_track *t, uint32_t frame) {
     pantin_result result = go_to(t, frame);
     t->rest = 0;
-    t->ended = 0;
+    t->ended = t->stands = 0;
     return result;
 }
 
@@ -612,6 +612,7 @@ static pantin_result advance(pantin_track *t, pantin_animator *a, uint64_t elaps
     p->forward = t->speed >= 0;
     p->laps = 0;
     *left_ns = 0;
+    t->stands = t->ended;
     t->rest += (int64_t)elapsed_ns * t->speed;
     target = to = p->from + take_steps(t, frame_time);
     if (t->clip.looped) {
@@ -647,6 +648,7 @@ static pantin_result step_track(pantin_track *t, pantin_animator *a, passage *p)
     p->laps = 0;
     p->forward = 1;
     t->rest = 0;
+    t->stands = t->ended;
     if (p->from + 1 < t->clip.frames) {
         result = go_to(t, p->from + 1);
     } else if (t->clip.looped) {
@@ -1218,11 +1220,8 @@ pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
 
 /* ---- Going over to another clip ---- */
 
-/* Whether the velocities lead on: nothing moves in a clip that has ended or is at its last frame. */
-static uint16_t moving_of(const pantin_track *t) {
-    int last = frame_of(t) + 1 >= t->clip.frames && !t->clip.looped;
-    return last || t->ended ? 0 : moving_count(&t->player);
-}
+/* How many channels move. A clip that comes to its end moves on in this instant, so that a transition takes its motion over; then nothing moves. */
+static uint16_t moving_of(const pantin_track *t) { return t->stands ? 0 : moving_count(&t->player); }
 
 /* How much of a frame of one clip passes in one of another, in 2^-16. */
 static int64_t ratio_of(const pantin_clip *of, const pantin_clip *clip) {

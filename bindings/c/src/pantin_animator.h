@@ -84,6 +84,7 @@ typedef struct pantin_track {
     int32_t speed; /* PANTIN_SPEED is 1: -4 to 4 */
     pantin_seam seam;
     uint8_t ended;  /* 1 once a clip that is no loop was played past its end */
+    uint8_t stands; /* 1 if it had ended before the time that passed last: then nothing moves */
     uint8_t closed; /* 1: the velocities lead from the last frame of a loop to frame 0 */
     uint8_t lapped; /* 1 once a loop has begun while no transition ran */
     uint8_t stale;  /* 1 after a failed read: the next call starts the player again at its frame */

@@ -65,6 +65,8 @@ pub struct Track<'a, 'm> {
     rest: i64,
     speed: I16F16,
     ended: bool,
+    /// Whether it had ended before the time that passed last: then nothing moves.
+    stands: bool,
     seam: Option<Seam>,
     /// Whether the velocities lead from the last frame of a loop to frame 0.
     closed: bool,
@@ -82,7 +84,18 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// A player in its memory, at frame 0.
     pub(crate) fn of_player(player: DetachedPlayer<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Self {
-        Track { player, states, pose, rest: 0, speed: I16F16::ONE, ended: false, seam: None, closed: false, kept: None }
+        Track {
+            player,
+            states,
+            pose,
+            rest: 0,
+            speed: I16F16::ONE,
+            ended: false,
+            stands: false,
+            seam: None,
+            closed: false,
+            kept: None,
+        }
     }
 
     /// A clip that is started again before it plays: how its channels start is read if the memory is perhaps too small, and else not.
@@ -95,8 +108,8 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// This clip at this instant, in other memory.
     pub(crate) fn in_memory<'n>(self, states: &'n mut [ChannelState], pose: &'n mut [i32]) -> Track<'a, 'n> {
-        let Track { player, rest, speed, ended, seam, closed, kept, .. } = self;
-        Track { player, states, pose, rest, speed, ended, seam, closed, kept }
+        let Track { player, rest, speed, ended, stands, seam, closed, kept, .. } = self;
+        Track { player, states, pose, rest, speed, ended, stands, seam, closed, kept }
     }
 
     /// States of the player and channels of the clip: the least memory.
@@ -157,13 +170,13 @@ impl<'a, 'm> Track<'a, 'm> {
     /// Plays at a speed of -4 to 4 from here on; others are cut off. Speed 0 holds the pose.
     pub fn set_speed(&mut self, speed: I16F16) {
         self.speed = speed.clamp(LEAST_SPEED, GREATEST_SPEED);
-        self.ended = false;
+        (self.ended, self.stands) = (false, false);
     }
 
     /// Goes to a frame, or to the last one if there are fewer, without passing events.
     pub fn seek(&mut self, frame: u32) {
         self.go_to(frame, None);
-        (self.rest, self.ended) = (0, false);
+        (self.rest, self.ended, self.stands) = (0, false, false);
     }
 
     /// Goes to an instant between frames.
@@ -247,10 +260,10 @@ impl<'a, 'm> Track<'a, 'm> {
         self.seam.as_ref()
     }
 
-    /// Slot and change of each moving channel from this frame to the next; nothing moves in a clip that has ended or is held.
+    /// Slot and change of each moving channel from this frame to the next. A clip that comes to its end moves on in this instant, so that a transition takes its
+    /// motion over; then nothing moves.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = (usize, i32)> + '_ {
-        let last = self.player.frame() + 1 >= self.clip().frames() && !self.clip().looped();
-        let moving = if last || self.ended { 0 } else { self.player.moving_channels() };
+        let moving = if self.stands { 0 } else { self.player.moving_channels() };
         self.states.get(..moving).unwrap_or_default().iter().map(|state| {
             let [v, ..] = state.rates();
             (state.slot(), v)
@@ -315,7 +328,7 @@ impl<'a, 'm> Track<'a, 'm> {
     pub(crate) fn step(&mut self, traveller: Option<&mut Traveller<'_, '_>>) -> Passage {
         let (from, from_rest) = (self.player.frame(), self.rest != 0);
         let mut passage = Passage { from, from_rest, to: from, to_rest: false, laps: 0, forward: true };
-        self.rest = 0;
+        (self.rest, self.stands) = (0, self.ended);
         if from + 1 < self.clip().frames() {
             self.go_to(from + 1, None);
         } else if self.clip().looped() {
@@ -351,6 +364,7 @@ impl<'a, 'm> Track<'a, 'm> {
     pub(crate) fn advance(&mut self, elapsed_ns: u64, mut traveller: Option<&mut Traveller<'_, '_>>) -> (Passage, u64) {
         let (from, from_rest) = (self.player.frame(), self.rest != 0);
         let forward = self.speed >= 0;
+        self.stands = self.ended;
         let frame_time = i64::from(self.clip().frame_time_ns()) << 16;
         // Below 2^42 times 2^18, and 2^48.
         self.rest += elapsed_ns as i64 * i64::from(self.speed.to_bits());

@@ -1,7 +1,7 @@
 // A figure that plays one clip after another, with transitions, root motion and events. The firmware's animator.rs, transition.rs, carry.rs and switch.rs state each step.
 import { abs, computeOf, floor, imul, max, min } from "../decoder/turning.js";
 import { FREE, MOST, WHOLE, big, clamp, groupsOf, mixGroup, nearest, rewritten, headingOf, isTurn, rotated, scaledDown, turnedBy, weighted, wide, wideShifted, yawOf } from "./channels.js";
-import { NORMAL, STATE, V, addPart, advance, beginLap, eachMoving, isLast, partOf, passLaps, placed, seek, start, travelOf } from "./track.js";
+import { NORMAL, STATE, V, addPart, advance, beginLap, eachMoving, partOf, passLaps, placed, seek, start, travelOf } from "./track.js";
 
 // Kinds of transitions: the third lets the difference of poses alone die out.
 const CUT = 0;
@@ -246,14 +246,12 @@ export const animatorOf = (first, carrier) => {
     d.set(here, begin);
     v.set(next, begin);
   };
-  // Whether the velocities lead on: nothing moves in a clip that has ended or is at its last frame.
-  const isMoving = (own) => !own.ended && (own.clip.looped || !isLast(own));
   // Keeps the pose of this instant and of a frame of the new clip later, as difference and velocity. A weight of a second track may be mixed in.
   const ratioOf = (own, clip) => min(floor((clip.frameTimeNs * 65536) / own.clip.frameTimeNs), 2 ** 30);
   // Adds a weight of what the channels of a track move in a frame of the new clip.
   const addMotion = (own, weight, clip) => {
     const speed = floor((own.speed * ratioOf(own, clip)) / 65536);
-    if (isMoving(own)) eachMoving(own, (c, x) => (v[c] += scaledDown(weighted(x, weight), speed, 16)));
+    if (!own.stands) eachMoving(own, (c, x) => (v[c] += scaledDown(weighted(x, weight), speed, 16)));
   };
   const takeMotion = (clip, second, weight) => {
     const ratio = ratioOf(track, clip);
@@ -289,7 +287,7 @@ export const animatorOf = (first, carrier) => {
       v[c] = isFaded ? 0 : v[c] - d[c];
       d[c] -= raw[c];
     }
-    if (!isFaded && isMoving(track)) eachMoving(track, (c, own) => (v[c] -= scaledDown(own, track.speed, 16)));
+    if (!isFaded) eachMoving(track, (c, own) => (v[c] -= scaledDown(own, track.speed, 16)));
   };
   // Brings the kept poses from the old clip's form to that of the new one.
   const convert = (old, clip) => {

@@ -28,7 +28,7 @@ const nearOf = ({ rig, exponent }, most) => wideShifted(NEAR, -max(exponent, -mo
 
 export const setSpeed = (track, speed) => {
   track.speed = clamp(speed, -4 * NORMAL, 4 * NORMAL);
-  track.ended = false;
+  track.ended = track.stands = false;
 };
 const goTo = (track, frame) => {
   const { player, clip } = track;
@@ -40,7 +40,7 @@ const goTo = (track, frame) => {
 export const seek = (track, frame) => {
   goTo(track, frame);
   track.rest = 0;
-  track.ended = false;
+  track.ended = track.stands = false;
 };
 // Plays a clip from a frame.
 export const start = (track, clip, frame = 0, speed = NORMAL) => {
@@ -141,6 +141,8 @@ export const beginLap = (track, root) => {
 export const advance = (track, elapsed, root, isAlone) => {
   const { clip, player, speed } = track;
   const { frames, looped } = clip;
+  // A clip that comes to its end moves on in this instant, so that a transition takes its motion over; then nothing moves.
+  track.stands = track.ended;
   const frameTime = big(clip.frameTimeNs) << 16n;
   const from = player.frame;
   const isAfter = track.rest > 0;

@@ -490,6 +490,36 @@ fn knees_bend_one_way_and_do_not_jump() {
     }
 }
 
+/// The greatest change of the hips' velocity over the ground, in cm a picture at 60 pictures a second, while a figure goes over from one state to another by the end
+/// of a clip that is no loop.
+const GOES_ON_CM: f64 = 1.0;
+
+#[test]
+fn a_motion_that_goes_on_at_its_clips_end_goes_over_into_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("library.ptb");
+    pantin(
+        &["convert", "--places-only", "--same-form", "--max-error", "0.5cm", "-o"],
+        &[&library, &repository().join("motions/library")],
+    );
+    let bytes = machine(&library, &own_machine());
+    let table = Table::of_bank(&bytes).unwrap();
+    let replay = Replay::new(Session::new_checked("1 hold go\n3 hold fast\n5 press jump\n9 end", &table).unwrap(), 60);
+    let (mut states, mut hips) = (Vec::new(), Vec::new());
+    play(&bytes, replay, |character| {
+        states.push(table.state_name(character.state()).to_string());
+        let [x, _, z] = joints(character)[1];
+        hips.push([x, z]);
+        Ok(())
+    })
+    .unwrap();
+    let change = states.windows(2).position(|pair| pair == ["leap", "run"]).expect("the figure runs on after its leap");
+    let jolt = |at: usize| [0, 1].map(|axis| hips[at + 1][axis] - 2.0 * hips[at][axis] + hips[at - 1][axis]);
+    let most = (change - 2..change + 6).map(|at| jolt(at)[0].hypot(jolt(at)[1])).fold(0.0, f64::max);
+    println!("from the leap to the run: {most:.2} cm a picture");
+    assert!(most < GOES_ON_CM, "{most} cm a picture");
+}
+
 #[test]
 fn what_is_wrong_with_feet_is_named_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
