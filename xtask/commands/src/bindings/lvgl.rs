@@ -148,7 +148,7 @@ pub fn library(build: &Build) -> Result<PathBuf> {
 }
 
 /// Runs a function for each of some things, on all processors. The first error ends it.
-fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> Result<()> {
+pub fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> Result<()> {
     let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
     let work = || {
         loop {
@@ -169,7 +169,7 @@ fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> 
 }
 
 /// Lists the files with an extension below a folder, for a compiler.
-fn files_of(
+pub fn files_of(
     folder: &Path,
     extension: &str,
     compiler: Option<&'static str>,
