@@ -25,6 +25,7 @@ MULTI_CONF = True
 
 CONF_EMOTE = "emote"
 CONF_TRANSITION = "transition"
+CONF_WIDGET = "widget"
 
 pantin_ns = cg.esphome_ns.namespace("pantin")
 Face = pantin_ns.class_("Face", cg.Component)
@@ -51,6 +52,13 @@ def emote(value):
     return cv.one_of(*_emotes(), lower=True)(value)
 
 
+def widget(value):
+    """Validates the id of a widget of LVGL, which is loaded only if it is used."""
+    from esphome.components.lvgl.types import lv_obj_base_t
+
+    return cv.use_id(lv_obj_base_t)(cv.requires_component("lvgl")(value))
+
+
 def face_id(value):
     """Refuses an id that is a name of the C library: the generated program declares both."""
     if isinstance(value, str) and value.startswith("pantin_"):
@@ -58,25 +66,34 @@ def face_id(value):
     return value
 
 
-CONFIG_SCHEMA = cv.Schema(
-    {
-        cv.GenerateID(): cv.All(face_id, cv.declare_id(Face)),
-        cv.Required(CONF_WIDTH): cv.int_range(min=1, max=2047),
-        cv.Required(CONF_HEIGHT): cv.int_range(min=1, max=2047),
-        cv.Optional(CONF_MODEL, default="cartoon"): cv.one_of(*MODELS, lower=True),
-        cv.Optional(CONF_EMOTE, default="neutral"): emote,
-        cv.Optional(CONF_TRANSITION, default="300ms"): cv.All(
-            cv.positive_time_period_milliseconds, cv.Range(max=cv.TimePeriod(milliseconds=65535))
-        ),
-        cv.Optional(CONF_DISPLAY_ID): cv.use_id(display.Display),
-        cv.Optional(CONF_X, default=0): cv.int_range(min=-2047, max=2047),
-        cv.Optional(CONF_Y, default=0): cv.int_range(min=-2047, max=2047),
-    }
-).extend(cv.COMPONENT_SCHEMA)
+CONFIG_SCHEMA = cv.All(
+    cv.Schema(
+        {
+            cv.GenerateID(): cv.All(face_id, cv.declare_id(Face)),
+            cv.Required(CONF_WIDTH): cv.int_range(min=1, max=2047),
+            cv.Required(CONF_HEIGHT): cv.int_range(min=1, max=2047),
+            cv.Optional(CONF_MODEL, default="cartoon"): cv.one_of(*MODELS, lower=True),
+            cv.Optional(CONF_EMOTE, default="neutral"): emote,
+            cv.Optional(CONF_TRANSITION, default="300ms"): cv.All(
+                cv.positive_time_period_milliseconds, cv.Range(max=cv.TimePeriod(milliseconds=65535))
+            ),
+            cv.Optional(CONF_DISPLAY_ID): cv.use_id(display.Display),
+            cv.Optional(CONF_WIDGET): widget,
+            cv.Optional(CONF_X, default=0): cv.int_range(min=-2047, max=2047),
+            cv.Optional(CONF_Y, default=0): cv.int_range(min=-2047, max=2047),
+        }
+    ).extend(cv.COMPONENT_SCHEMA),
+    cv.has_at_most_one_key(CONF_DISPLAY_ID, CONF_WIDGET),
+)
 
 
 def _final_validate(config):
     """Checks that nothing else draws on a display to which the face sends its rows, and finds the byte order of its pixels."""
+    if CONF_WIDGET in config:
+        from esphome.components.lvgl.defines import add_lv_use
+
+        # LVGL's image needs labels.
+        add_lv_use("image", "label")
     if CONF_DISPLAY_ID not in config:
         return config
     data = display.get_display_metadata(config[CONF_DISPLAY_ID])
@@ -106,6 +123,12 @@ async def to_code(config):
         # A display that states no byte order takes either, or the one that is usual.
         big_endian = config.get(CONF_BYTE_ORDER) != BYTE_ORDER_LITTLE
         cg.add(var.set_display(panel, config[CONF_X], config[CONF_Y], big_endian))
+    if CONF_WIDGET in config:
+        from esphome.components.lvgl.widgets import get_widgets, wait_for_widgets
+
+        parent = (await get_widgets(config, CONF_WIDGET))[0]
+        await wait_for_widgets()
+        cg.add(var.set_widget(parent.obj, config[CONF_X], config[CONF_Y]))
 
 
 @automation.register_action(

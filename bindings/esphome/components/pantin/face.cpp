@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cinttypes>
+#include <cstring>
 #include <new>
 
 #include "esphome/core/application.h"
@@ -46,6 +47,10 @@ void Face::setup() {
   pantin_face_transition(&this->face_, this->transition_ms_);
   if (this->display_ != nullptr)
     this->sent_.resize((this->height_ + ROWS - 1) / ROWS);
+#ifdef USE_LVGL
+  if (this->parent_ != nullptr && !this->make_image_())
+    this->mark_failed(LOG_STR("There is not enough memory for the image of the face"));
+#endif
 }
 
 void Face::loop() {
@@ -60,8 +65,7 @@ void Face::loop() {
     pantin_face_viseme(&this->face_, i, this->talk_.weights[i - 1]);
   pantin_face_speaking(&this->face_, this->opened_by_level_ ? PANTIN_FACE_FULL : this->talk_.speaking);
   pantin_face_step(&this->face_, ms);
-  if (this->display_ != nullptr)
-    this->draw_changes_();
+  this->draw_changes_();
 }
 
 void Face::dump_config() {
@@ -71,8 +75,13 @@ void Face::dump_config() {
                 "  Model: %" PRIu32 " bytes",
                 this->width_, this->height_, this->length_);
   if (this->display_ != nullptr) {
-    ESP_LOGCONFIG(TAG, "  Draws itself at %d, %d", this->x_, this->y_);
+    ESP_LOGCONFIG(TAG, "  Sends its rows to the display at %d, %d", this->x_, this->y_);
   }
+#ifdef USE_LVGL
+  if (this->image_ != nullptr) {
+    ESP_LOGCONFIG(TAG, "  Image in a widget of LVGL at %d, %d", this->x_, this->y_);
+  }
+#endif
 }
 
 bool Face::emote(const std::string &name) {
@@ -140,24 +149,79 @@ void Face::draw(display::Display &it, int x, int y) {
   }
 }
 
-/// Sends the bands whose pixels changed. One change in 2^32 has the checksum of the band before and is sent with the next one.
+/// Draws the face for a display or a widget, if it has one.
 void Face::draw_changes_() {
-  const bool swapped = this->big_endian_ != (std::endian::native == std::endian::big);
+  pantin_format format = PANTIN_RGB565;
+  if (this->display_ != nullptr) {
+    if (this->big_endian_ != (std::endian::native == std::endian::big))
+      format = PANTIN_RGB565_SWAPPED;
+#ifdef USE_LVGL
+  } else if (this->image_ != nullptr) {
+#endif
+  } else {
+    return;
+  }
   for (uint16_t first = 0; first < this->height_; first = this->end_(first)) {
-    const size_t stride = this->width_ * 2;
-    if (!this->rows_(swapped ? PANTIN_RGB565_SWAPPED : PANTIN_RGB565, stride, first))
+    if (!this->rows_(format, this->width_ * 2, first))
       return;
     const int height = this->end_(first) - first;
-    const auto *bytes = reinterpret_cast<const uint8_t *>(this->buffer_.get());
-    uint32_t sum = FNV_BASIS;
-    for (int i = 0; i < this->width_ * height; i++)
-      sum = (sum ^ this->buffer_[i]) * FNV_PRIME;
-    if (sum == this->sent_[first / ROWS])
-      continue;
-    this->sent_[first / ROWS] = sum;
-    this->display_->draw_pixels_at(this->x_, this->y_ + first, this->width_, height, bytes, display::COLOR_ORDER_RGB,
-                                   display::COLOR_BITNESS_565, this->big_endian_);
+    if (this->display_ != nullptr)
+      this->send_(first, height);
+#ifdef USE_LVGL
+    if (this->image_ != nullptr)
+      this->show_(first, height);
+#endif
   }
 }
+
+/// Sends a band to the display if it changed. One change in 2^32 has the checksum of the band before and is sent with the next one.
+void Face::send_(uint16_t first, int height) {
+  uint32_t sum = FNV_BASIS;
+  for (int i = 0; i < this->width_ * height; i++)
+    sum = (sum ^ this->buffer_[i]) * FNV_PRIME;
+  if (sum == this->sent_[first / ROWS])
+    return;
+  this->sent_[first / ROWS] = sum;
+  this->display_->draw_pixels_at(this->x_, this->y_ + first, this->width_, height,
+                                 reinterpret_cast<const uint8_t *>(this->buffer_.get()), display::COLOR_ORDER_RGB,
+                                 display::COLOR_BITNESS_565, this->big_endian_);
+}
+
+#ifdef USE_LVGL
+/// Makes an image in the widget, with all pixels of the face. Returns false if memory is used up.
+bool Face::make_image_() {
+  const size_t stride = this->width_ * 2;
+  uint8_t *pixels = RAMAllocator<uint8_t>().allocate(stride * this->height_);
+  if (pixels == nullptr)
+    return false;
+  memset(pixels, 0, stride * this->height_);
+  lv_image_header_t &header = this->picture_.header;
+  header.magic = LV_IMAGE_HEADER_MAGIC;
+  header.cf = LV_COLOR_FORMAT_RGB565;
+  header.w = this->width_;
+  header.h = this->height_;
+  header.stride = stride;
+  this->picture_.data = pixels;
+  this->picture_.data_size = stride * this->height_;
+  this->image_ = lv_image_create(this->parent_);
+  lv_image_set_src(this->image_, &this->picture_);
+  lv_obj_set_pos(this->image_, this->x_, this->y_);
+  return true;
+}
+
+/// Copies a band to the image if it changed, and lets LVGL draw it again.
+void Face::show_(uint16_t first, int height) {
+  const size_t stride = this->width_ * 2;
+  uint8_t *rows = const_cast<uint8_t *>(this->picture_.data) + first * stride;
+  if (memcmp(rows, this->buffer_.get(), height * stride) == 0)
+    return;
+  memcpy(rows, this->buffer_.get(), height * stride);
+  lv_area_t area;
+  lv_obj_get_coords(this->image_, &area);
+  area.y1 += first;
+  area.y2 = area.y1 + height - 1;
+  lv_obj_invalidate_area(this->image_, &area);
+}
+#endif
 
 }  // namespace esphome::pantin

@@ -7,13 +7,18 @@
 #include "esphome/components/display/display.h"
 #include "esphome/core/automation.h"
 #include "esphome/core/component.h"
+#include "esphome/core/defines.h"
+#ifdef USE_LVGL
+#include "esphome/components/lvgl/lvgl_proxy.h"
+#endif
 
 #include "pantin_face.h"
 #include "pantin_talk.h"
 
 namespace esphome::pantin {
 
-/// A face that shows emotes, blinks and glances by itself, and speaks. It is drawn in a display's lambda by draw(), or by itself on the display of set_display().
+/// A face that shows emotes, blinks and glances by itself, and speaks. It is drawn in a display's lambda by draw(), or draws itself on the display of
+/// set_display() or in the widget of set_widget().
 ///
 /// All functions are for the main loop.
 class Face : public Component {
@@ -32,6 +37,15 @@ class Face : public Component {
     this->y_ = y;
     this->big_endian_ = big_endian;
   }
+
+#ifdef USE_LVGL
+  /// Lets the face draw itself in a widget of LVGL: an image with its left upper corner at x, y of the widget, which changes every 33 ms.
+  void set_widget(lv_obj_t *parent, int x, int y) {
+    this->parent_ = parent;
+    this->x_ = x;
+    this->y_ = y;
+  }
+#endif
 
   void setup() override;
   void loop() override;
@@ -65,6 +79,11 @@ class Face : public Component {
 
  protected:
   void draw_changes_();
+  void send_(uint16_t first, int height);
+#ifdef USE_LVGL
+  bool make_image_();
+  void show_(uint16_t first, int height);
+#endif
   bool rows_(pantin_format format, size_t stride, uint16_t first);
   uint16_t end_(uint16_t first) const;
 
@@ -80,6 +99,11 @@ class Face : public Component {
   std::vector<uint32_t> sent_;
   const char *initial_emote_{"neutral"};
   display::Display *display_{nullptr};
+#ifdef USE_LVGL
+  lv_obj_t *parent_{nullptr};
+  lv_obj_t *image_{nullptr};
+  lv_image_dsc_t picture_{};
+#endif
   int x_{0}, y_{0};
   uint16_t width_, height_;
   uint16_t transition_ms_{300};

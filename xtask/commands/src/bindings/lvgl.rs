@@ -16,15 +16,15 @@ use tempfile::TempDir;
 use super::{SANITIZERS, SOURCES, output};
 
 /// How LVGL's sources and programs for it are compiled.
-pub struct Build {
+pub struct Build<'a> {
     /// Names the folder of the objects.
     pub name: &'static str,
     /// The compilers for C and, where the sources in C++ are wanted, for C++.
     pub compilers: [Option<&'static str>; 2],
     /// Their options.
     pub options: &'static [&'static str],
-    /// The folder of `lv_conf.h` in `bindings/lvgl`.
-    pub settings: &'static str,
+    /// The folder of `lv_conf.h`, from `bindings/lvgl`.
+    pub settings: &'a str,
 }
 
 /// For this machine.

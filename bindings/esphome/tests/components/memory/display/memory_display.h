@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "esphome/components/display/display.h"
+#include "esphome/components/pantin/face.h"
 #include "esphome/core/log.h"
 
 namespace esphome::memory {
@@ -46,6 +47,27 @@ class MemoryDisplay : public display::Display {
     for (int i = top * this->width_; i < bottom * this->width_; i++)
       count += this->pixels[i].raw_32 != other[i].raw_32;
     return count;
+  }
+
+  /// Compares the display with the picture that the C library draws of a face, whose left upper corner is at x, y. Prints how many pixels are lit in the
+  /// picture, how many of those between two rows of the display differ, and how many are lit outside of the picture or these rows.
+  void compare(const char *name, pantin::Face *face, int x, int y, int top = 0, int bottom = 2047) const {
+    const int width = face->get_face()->width, height = face->get_face()->height;
+    std::vector<uint16_t> rows(width * height);
+    pantin_face_draw(face->get_face(), PANTIN_RGB565, rows.data(), width * 2, 0, height);
+    int lit = 0, wrong = 0, outside = 0;
+    for (uint16_t pixel : rows)
+      lit += pixel != 0;
+    for (int i = 0; i < this->width_ * this->height_; i++) {
+      const int column = i % this->width_ - x, row = i / this->width_ - y;
+      const uint16_t pixel = display::ColorUtil::color_to_565(this->pixels[i]);
+      if (column < 0 || column >= width || row < 0 || row >= height || row + y < top || row + y >= bottom) {
+        outside += pixel != 0;
+      } else {
+        wrong += pixel != rows[row * width + column];
+      }
+    }
+    ::printf("%s: %d lit, %d wrong, %d outside\n", name, lit, wrong, outside);
   }
 
   std::vector<Color> pixels;
