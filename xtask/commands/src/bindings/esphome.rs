@@ -78,9 +78,14 @@ pub fn run(folder: &TempDir) -> Result<()> {
     esphome.on_this_machine()
 }
 
+/// Where ESPHome and the pictures of the test are kept.
+fn target() -> PathBuf {
+    paths::root().join("target/esphome")
+}
+
 /// The Python environment with ESPHome, which is made once; none if it cannot be installed.
 fn environment() -> Option<PathBuf> {
-    let folder = paths::root().join("target/esphome/python");
+    let folder = target().join("python");
     let version = |folder: &Path| {
         let printed = Command::new(folder.join("bin/esphome")).arg("version").output().ok()?;
         String::from_utf8_lossy(&printed.stdout).trim().strip_prefix("Version: ").map(|version| format!("esphome=={version}"))
@@ -210,8 +215,10 @@ impl Esphome {
         let mut link = Command::new("g++");
         link.args(SANITIZERS).args(&objects).arg(&lvgl).arg("-lpthread").arg("-o").arg(&program);
         output(link)?;
+        let pictures = target().join("pictures");
+        fs::create_dir_all(&pictures)?;
         let mut run = Command::new("timeout");
-        run.arg("60").arg(&program).current_dir(&self.place);
+        run.arg("60").arg(&program).current_dir(&pictures);
         let printed = String::from_utf8(output(run)?.stdout)?;
         check(&printed).with_context(|| printed.clone())?;
         println!("   {} sources of ESPHome and the component; {}", files.len(), summary(&printed));
