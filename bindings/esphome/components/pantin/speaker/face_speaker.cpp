@@ -57,7 +57,9 @@ uint32_t FaceSpeaker::take_(int16_t *samples, uint32_t *rate) {
   this->played_ += this->just_played_.exchange(0, std::memory_order_relaxed);
   if (this->written_ > this->read_ + this->capacity_)
     this->read_ = this->written_ - this->capacity_;
-  const uint64_t end = std::min(this->played_ / this->frames_per_sample_, this->written_);
+  // After a stop, the output speaker may still report sound of before.
+  this->played_ = std::min(this->played_, (this->written_ + 1) * this->frames_per_sample_ - 1);
+  const uint64_t end = this->played_ / this->frames_per_sample_;
   uint32_t count = 0;
   for (; this->read_ < end && count < CHUNK; this->read_++)
     samples[count++] = this->waiting_[this->read_ % this->capacity_];
@@ -65,9 +67,8 @@ uint32_t FaceSpeaker::take_(int16_t *samples, uint32_t *rate) {
   return count;
 }
 
-/// Prepares for the sound that follows: the output speaker plays it in the format in which it comes.
-void FaceSpeaker::begin_() {
-  this->output_speaker_->set_audio_stream_info(this->audio_stream_info_);
+/// Drops what waits, and prepares for sound in the format of the stream.
+void FaceSpeaker::reset_() {
   const uint32_t rate = this->audio_stream_info_.get_sample_rate();
   LockGuard lock(this->mutex_);
   this->frames_per_sample_ = std::max<uint32_t>(1, rate / LEAST_RATE);
@@ -79,8 +80,11 @@ void FaceSpeaker::begin_() {
 }
 
 void FaceSpeaker::start() {
-  if (this->output_speaker_->is_stopped())
-    this->begin_();
+  if (this->output_speaker_->is_stopped()) {
+    // It plays sound in the format in which it comes.
+    this->output_speaker_->set_audio_stream_info(this->audio_stream_info_);
+    this->reset_();
+  }
   this->state_ = speaker::STATE_STARTING;
   this->output_speaker_->start();
 }
@@ -88,6 +92,7 @@ void FaceSpeaker::start() {
 void FaceSpeaker::stop() {
   this->state_ = speaker::STATE_STOPPING;
   this->output_speaker_->stop();
+  this->reset_();
 }
 
 void FaceSpeaker::finish() {

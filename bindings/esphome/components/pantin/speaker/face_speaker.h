@@ -42,7 +42,7 @@ class FaceSpeaker : public Component, public speaker::Speaker, public Parented<F
   bool get_mute_state() override { return this->output_speaker_->get_mute_state(); }
 
  protected:
-  void begin_();
+  void reset_();
   uint32_t take_(int16_t *samples, uint32_t *rate);
   void keep_(const uint8_t *data, size_t length);
   int32_t mono_(const uint8_t *frame) const;
