@@ -34,7 +34,7 @@ CONFIG_SCHEMA = cv.All(
             cv.GenerateID(): cv.All(face_id, cv.declare_id(FaceSpeaker)),
             cv.GenerateID(CONF_FACE_ID): cv.use_id(Face),
             cv.Required(CONF_OUTPUT_SPEAKER): cv.use_id(speaker.Speaker),
-            cv.Optional(CONF_BUFFER_DURATION, default="1s"): cv.All(
+            cv.Optional(CONF_BUFFER_DURATION, default="700ms"): cv.All(
                 cv.positive_time_period_milliseconds,
                 cv.Range(min=cv.TimePeriod(milliseconds=100), max=cv.TimePeriod(milliseconds=5000)),
             ),

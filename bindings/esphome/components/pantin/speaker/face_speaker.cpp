@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cinttypes>
-#include <new>
 
 #include "esphome/core/log.h"
 
@@ -12,14 +11,14 @@ static const char *const TAG = "pantin.speaker";
 
 /// The least rate of the samples that wait: lips are found in sound of 8 kHz.
 static const uint32_t LEAST_RATE = 8000;
-/// The rate of those samples is below this one.
-static const uint32_t GREATEST_RATE = 2 * LEAST_RATE;
+/// The greatest rate of those samples, with sound of 11.025, 12, 22.05, 24 or 44.1 kHz. Sound of 12 to 16 kHz makes buffer_duration shorter.
+static const uint32_t GREATEST_RATE = 12000;
 /// Samples that the face gets at a time.
 static const uint32_t CHUNK = 128;
 
 void FaceSpeaker::setup() {
   this->capacity_ = this->buffer_ms_ * GREATEST_RATE / 1000;
-  this->waiting_.reset(new (std::nothrow) int16_t[this->capacity_]);
+  this->waiting_ = RAMAllocator<int16_t>().allocate(this->capacity_);
   if (this->waiting_ == nullptr) {
     this->mark_failed(LOG_STR("There is not enough memory for buffer_duration"));
     return;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 
 #include "esphome/components/pantin/face.h"
 #include "esphome/components/speaker/speaker.h"
@@ -49,7 +48,7 @@ class FaceSpeaker : public Component, public speaker::Speaker, public Parented<F
 
   speaker::Speaker *output_speaker_{nullptr};
   /// Samples at about 8 kHz that wait for being played: sample `i` since the start is at `i % capacity_`.
-  std::unique_ptr<int16_t[]> waiting_;
+  int16_t *waiting_{nullptr};
   uint32_t capacity_{0};
   /// Since the start: samples that were written, samples that the face got, frames that were played.
   uint64_t written_{0}, read_{0}, played_{0};
@@ -62,7 +61,7 @@ class FaceSpeaker : public Component, public speaker::Speaker, public Parented<F
   Mutex mutex_;
   /// Frames that the output speaker has played and that are not part of played_ yet.
   std::atomic<uint32_t> just_played_{0};
-  uint32_t buffer_ms_{1000};
+  uint32_t buffer_ms_{700};
 };
 
 }  // namespace esphome::pantin
