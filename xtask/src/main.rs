@@ -24,7 +24,7 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 30] = [
+const LIST: [(&str, Place, &str); 31] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -41,6 +41,7 @@ const LIST: [(&str, Place, &str); 30] = [
         COMMANDS,
         "Prints the line coverage of decoder, link and store by their own tests and the sender's; needs cargo-llvm-cov",
     ),
+    ("esphome", COMMANDS, "Writes the ESPHome component of a talking face to a folder"),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
     ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
     ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),

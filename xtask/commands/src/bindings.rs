@@ -1,9 +1,10 @@
-//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library, the decoder in MicroPython and the Python package
-//! (`bindings`), which need compilers for other targets.
+//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library, the ESPHome component, the decoder in MicroPython and the
+//! Python package (`bindings`), which need compilers for other targets.
 
 mod animator;
 mod arduino;
 mod blender;
+mod esphome;
 mod face;
 mod figure;
 mod flash;
@@ -251,6 +252,7 @@ impl Bindings {
         steps.run("names that a clip lacks, on an Uno in simavr", || arduino::missing(&folder));
         steps.run("four servos on an Arduino Uno in simavr", || arduino::servos(&folder));
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
+        steps.run("a face on ESPHome's displays", || esphome::run(&folder));
         steps.run("MicroPython", || micropython::run(&folder));
         steps.run("JavaScript", || turns::javascript(&folder));
         steps.run("wheel of the Python package", || python::run(&folder));

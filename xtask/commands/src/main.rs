@@ -7,6 +7,7 @@ mod blender;
 mod campaign;
 mod conformance;
 mod downloads;
+mod esphome;
 mod firmware;
 mod fuzz;
 mod gallery;
@@ -35,6 +36,7 @@ enum Command {
     Bindings(bindings::Bindings),
     Blender(blender::Blender),
     Coverage(campaign::Coverage),
+    Esphome(esphome::Esphome),
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
     Gallery(gallery::Gallery),
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Command::Bindings(bindings) => bindings.run(),
         Command::Blender(blender) => blender.run(),
         Command::Coverage(coverage) => coverage.run(),
+        Command::Esphome(esphome) => esphome.run(),
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),

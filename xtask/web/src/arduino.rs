@@ -26,7 +26,7 @@ pub fn home() -> PathBuf {
 
 /// Writes the library to a folder, which is new or empty or has this library, whose sources are replaced then. Returns the number of files.
 pub fn write(folder: &Path) -> Result<usize> {
-    make_room(folder)?;
+    make_room(folder, is_library(folder), "src")?;
     let mut count = copy(&home(), folder)?;
     let sources = paths::root().join("bindings/c/src");
     count += copy(&sources, &folder.join("src"))?;
@@ -50,13 +50,21 @@ pub fn write(folder: &Path) -> Result<usize> {
     Ok(count)
 }
 
-/// Makes the folder, or takes the sources of an older library away. An error if the folder has anything else.
-fn make_room(folder: &Path) -> Result<()> {
+/// Whether the folder has this library.
+fn is_library(folder: &Path) -> bool {
+    fs::read_to_string(folder.join("library.properties")).is_ok_and(|text| text.lines().any(|line| line == NAME))
+}
+
+/// Makes the folder, or removes the sources of an older version from it. An error if the folder has anything else.
+pub fn make_room(folder: &Path, is_older: bool, sources: &str) -> Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let is_ours = fs::read_to_string(folder.join("library.properties")).is_ok_and(|text| text.lines().any(|line| line == NAME));
     let is_empty = fs::read_dir(folder)?.next().is_none();
-    ensure!(is_ours || is_empty, "{} has other files: name a new folder, or one with this library", folder.display());
-    let sources = folder.join("src");
+    ensure!(
+        is_older || is_empty,
+        "{} has other files: name a new folder, or one that this command has written",
+        folder.display()
+    );
+    let sources = folder.join(sources);
     if sources.exists() {
         fs::remove_dir_all(&sources).with_context(|| sources.display().to_string())?;
     }
@@ -64,7 +72,7 @@ fn make_room(folder: &Path) -> Result<()> {
 }
 
 /// Copies a folder, without tests. Links of its pages to what lies elsewhere in the repository become plain text. Returns the number of files.
-pub(crate) fn copy(from: &Path, to: &Path) -> Result<usize> {
+pub fn copy(from: &Path, to: &Path) -> Result<usize> {
     fs::create_dir_all(to)?;
     let mut count = 0;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

@@ -52,7 +52,7 @@ struct Shown {
     makes: &'static str,
     /// What is compiled of it.
     with: &'static [&'static str],
-    build: &'static Build,
+    build: &'static Build<'static>,
 }
 
 const FACE: &[&str] = &["-DWITH_PANTIN", "-DLV_PANTIN_BODY=0"];

@@ -8,16 +8,16 @@ use harness::paths;
 use tempfile::TempDir;
 
 use super::output;
-use crate::arduino;
 use crate::wheels::addon;
+use crate::{arduino, esphome};
 
 /// The files.
 pub const NAMES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /// The folders of `bindings` that are copied or packed.
-pub const FOLDERS: [&str; 7] = ["c", "arduino", "lvgl", "xiaozhi", "micropython", "python", "blender"];
+pub const FOLDERS: [&str; 8] = ["c", "arduino", "lvgl", "xiaozhi", "esphome", "micropython", "python", "blender"];
 
-/// Looks into the folders, the Arduino library and the Blender add-on; the step of the wheel looks into that.
+/// Looks into the folders, the Arduino library, the ESPHome component and the Blender add-on; the step of the wheel looks into that.
 pub fn run(folder: &TempDir) -> Result<()> {
     for name in FOLDERS {
         check(&paths::root().join("bindings").join(name))?;
@@ -25,6 +25,9 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let library = folder.path().join("licences");
     arduino::write(&library)?;
     check(&library)?;
+    let component = folder.path().join("component");
+    esphome::write(&component)?;
+    check(&component)?;
     // What a wheel has inside makes no difference here.
     let wheel = folder.path().join("any.whl");
     std::fs::write(&wheel, "")?;

@@ -17,15 +17,15 @@ use tempfile::TempDir;
 use super::{SANITIZERS, SOURCES, output};
 
 /// How LVGL's sources and programs for it are compiled.
-pub struct Build {
+pub struct Build<'a> {
     /// Names the folder of the objects.
     pub name: &'static str,
     /// The compilers for C and, where the sources in C++ are wanted, for C++.
     pub compilers: [Option<&'static str>; 2],
     /// Their options.
     pub options: &'static [&'static str],
-    /// The folder of `lv_conf.h` in `bindings/lvgl`.
-    pub settings: &'static str,
+    /// The folder of `lv_conf.h`, from `bindings/lvgl`.
+    pub settings: &'a str,
 }
 
 /// For this machine.
@@ -166,7 +166,7 @@ pub fn library(build: &Build) -> Result<PathBuf> {
 }
 
 /// Runs a function for each of some things, on all processors. The first error ends it.
-fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> Result<()> {
+pub fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> Result<()> {
     let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
     let work = || {
         loop {
@@ -187,7 +187,7 @@ fn each<T: Sync>(things: &[T], run: impl Fn(usize, &T) -> Result<()> + Sync) -> 
 }
 
 /// Lists the files with an extension below a folder, for a compiler.
-fn files_of(
+pub fn files_of(
     folder: &Path,
     extension: &str,
     compiler: Option<&'static str>,
