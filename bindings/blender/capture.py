@@ -6,8 +6,11 @@ import numpy as np
 import pantin
 from mathutils import Matrix, Quaternion, Vector
 
-# Columns of a matrix whose lengths differ by more than this part are a non-uniform scale.
+# Columns of a matrix whose lengths differ by more than this part are a non-uniform scale, and one by more than the second is refused.
 UNIFORM = 1e-4
+STRETCHED = 0.05
+# Cosine of the greatest angle between bones that point the same way.
+ALONG = 0.99
 # Name of the property of a bone with the rotation from the joint's axes to the bone's: w, x, y, z.
 AXES = "pantin_axes"
 
@@ -33,11 +36,12 @@ def frame_range(scene, armature):
     raise Refused(f"armature `{armature.name}` has no action")
 
 
-def capture(context, armature, deforming_only=False):
-    """The motion of an armature over its action. The scene is at its frame again afterwards."""
+def capture(context, armature, deforming_only=True, frames=None):
+    """The motion of an armature over its action, or over a range of frames, and notes about it. The scene is at its frame again afterwards."""
     scene = context.scene
-    first, last = frame_range(scene, armature)
+    first, last = frames or frame_range(scene, armature)
     names, parents = bones(armature, deforming_only)
+    stretched = {}
     leaves = [index for index in range(len(names)) if index not in parents]
     sources = scalars(scene, armature)
     rotations, translations, values = [], [], []
@@ -46,7 +50,7 @@ def capture(context, armature, deforming_only=False):
         for frame in range(first, last + 1):
             scene.frame_set(frame)
             depsgraph = context.evaluated_depsgraph_get()
-            worlds, tails = places(armature.evaluated_get(depsgraph), names, leaves, frame)
+            worlds, tails = places(armature.evaluated_get(depsgraph), names, leaves, frame, stretched)
             turns, moves = local(worlds, parents)
             for index, tail in zip(leaves, tails):
                 turns.append(Quaternion())
@@ -63,26 +67,70 @@ def capture(context, armature, deforming_only=False):
     full_scales = {name: full_scale for name, _, full_scale in sources if full_scale}
     rate = scene.render.fps / scene.render.fps_base
     unit = 100 * scene.unit_settings.scale_length
-    return pantin.Motion(joints, rotations, translations, given, full_scales, rate, unit, "z")
+    return pantin.Motion(joints, rotations, translations, given, full_scales, rate, unit, "z"), notes(stretched)
+
+
+def notes(stretched):
+    """What is left out of the motion: the greatest scale of each bone, with its frame."""
+    if not stretched:
+        return []
+    name, (part, frame) = max(stretched.items(), key=lambda item: item[1][0])
+    others = f" and of {len(stretched) - 1} other bones" if len(stretched) > 1 else ""
+    return [f"the scales of bone `{name}`{others} are left out: at most {100 * part:.2f} %, at frame {frame}; all joints keep their places"]
 
 
 def bones(armature, deforming_only):
     """Names of the bones that are joints, parents first, and indices of their parents."""
-    names, parents = [], []
-    index = {}
-    for bone in parents_first(armature.data.bones):
-        above = bone.parent
-        while above is not None and above.name not in index:
-            above = above.parent
-        # A bone that carries deforming ones is kept, too.
-        if deforming_only and not any(other.use_deform for other in [bone, *bone.children_recursive]):
-            continue
-        index[bone.name] = len(names)
-        names.append(bone.name)
-        parents.append(None if above is None else index[above.name])
-    if not names:
+    kept = [bone for bone in armature.data.bones if bone.use_deform] if deforming_only else []
+    kept = kept or list(armature.data.bones)
+    if not kept:
         raise Refused(f"armature `{armature.name}` has no bones")
-    return names, parents
+    above = hung(kept)
+    depths = {}
+
+    def depth(name):
+        if name not in depths:
+            depths[name] = 0 if above[name] is None else depth(above[name]) + 1
+        return depths[name]
+
+    names = sorted(above, key=depth)
+    index = {name: number for number, name in enumerate(names)}
+    return names, [None if above[name] is None else index[above[name]] for name in names]
+
+
+def hung(kept):
+    """For each of some bones the one on which it hangs, or None: the nearest bone above it that is kept or that one of them stands for, as it begins there and points
+    the same way. In a generated rig the deforming bones of limbs hang on bones that deform nothing."""
+    names = {bone.name for bone in kept}
+    heads = {}
+    for bone in kept:
+        heads.setdefault(tuple(round(x, 4) for x in bone.head_local), []).append(bone)
+
+    def candidates(bone):
+        for above in bone.parent_recursive:
+            if above.name in names:
+                yield above.name
+            else:
+                for other in heads.get(tuple(round(x, 4) for x in above.head_local), []):
+                    if other.vector.length and along(other, above):
+                        yield other.name
+
+    found = {}
+    for bone in parents_first(kept):
+
+        def hangs_on_it(name):
+            while name is not None and name != bone.name:
+                name = found.get(name)
+            return name is not None
+
+        found[bone.name] = next((name for name in candidates(bone) if not hangs_on_it(name)), None)
+    return found
+
+
+def along(bone, other):
+    """Whether two bones point the same way at rest."""
+    one, two = ((each.tail_local - each.head_local).normalized() for each in (bone, other))
+    return one.dot(two) > ALONG
 
 
 def parents_first(all_bones):
@@ -90,15 +138,18 @@ def parents_first(all_bones):
     return sorted(all_bones, key=lambda bone: len(bone.parent_recursive))
 
 
-def places(armature, names, leaves, frame):
-    """Rotation and place of each bone in the world, and the tails of the leaves."""
+def places(armature, names, leaves, frame, stretched):
+    """Rotation and place of each bone in the world, and the tails of the leaves. `stretched` keeps the greatest scales that are left out."""
     world = armature.matrix_world
     check(world, f"object `{armature.name}`", frame)
     found, tails = [], []
     for name in names:
         bone = armature.pose.bones[name]
         matrix = world @ bone.matrix
-        check(matrix, f"bone `{name}`", frame)
+        part = check(matrix, f"bone `{name}`", frame)
+        # Of equal ones the first.
+        if part > stretched.get(name, (0.0,))[0] + UNIFORM:
+            stretched[name] = (part, frame)
         found.append((matrix.to_quaternion() @ axes(bone.bone).inverted(), matrix.translation.copy()))
     for index in leaves:
         tails.append(world @ armature.pose.bones[names[index]].tail)
@@ -106,17 +157,19 @@ def places(armature, names, leaves, frame):
 
 
 def check(matrix, what, frame):
-    """Refuses a matrix that stretches its axes differently, shears or mirrors."""
+    """By how much a matrix stretches or shears its axes, as a part. Refuses one that does it by more than 5 %, or mirrors."""
     columns = [Vector(column).xyz for column in matrix.to_3x3().col]
     lengths = [column.length for column in columns]
-    if min(lengths) <= 0 or max(lengths) - min(lengths) > UNIFORM * max(lengths):
+    if min(lengths) <= 0 or max(lengths) - min(lengths) > STRETCHED * max(lengths):
         shown = ", ".join(f"{length:.4g}" for length in lengths)
         raise Refused(f"{what} has a non-uniform scale at frame {frame}: {shown}")
     a, b, c = (column.normalized() for column in columns)
-    if max(abs(a.dot(b)), abs(b.dot(c)), abs(c.dot(a))) > UNIFORM:
+    sheared = max(abs(a.dot(b)), abs(b.dot(c)), abs(c.dot(a)))
+    if sheared > STRETCHED:
         raise Refused(f"{what} is sheared at frame {frame}, by the non-uniform scale of what is above it")
     if matrix.to_3x3().determinant() < 0:
         raise Refused(f"{what} is mirrored at frame {frame}")
+    return max(sheared, 1 - min(lengths) / max(lengths))
 
 
 def local(worlds, parents):

@@ -9,7 +9,7 @@ import pantin
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .apply import apply
-from .capture import Refused, capture
+from .capture import Refused, capture, frame_range
 
 # The picture that the panel shows.
 IMAGE = "Pantin preview"
@@ -32,7 +32,9 @@ class Settings(bpy.types.PropertyGroup):
         items=[("fast", "Fast", ""), ("default", "Default", ""), ("best", "Best", "")],
         default="default",
     )
-    deforming_only: bpy.props.BoolProperty(name="Deforming Bones Only", description="Leave out bones that deform nothing", default=False)
+    deforming_only: bpy.props.BoolProperty(
+        name="Deforming Bones Only", description="Leave out bones that deform nothing, such as those that control a rig", default=True
+    )
     result: bpy.props.StringProperty(options={"SKIP_SAVE"})
 
 
@@ -46,14 +48,31 @@ def armature_of(context):
     return active
 
 
-def convert(context, report):
-    """A clip of the active action. `report` shows what is odd about it, as that of an operator does."""
+def settings_drawn(layout, context):
+    """How a clip is made, in the panel and in the file dialog."""
+    layout.use_property_split = True
+    for name in ("bound", "scalar_bound", "effort", "deforming_only"):
+        layout.prop(context.scene.pantin, name)
+
+
+def events(scene, first, last):
+    """The scene's markers within the motion, by frame and name."""
+    markers = sorted(scene.timeline_markers, key=lambda marker: marker.frame)
+    return [(marker.frame - first, marker.name) for marker in markers if first <= marker.frame <= last and marker.name]
+
+
+def convert(context, report, frames=None):
+    """A clip of the active action, or of a range of its frames. `report` shows what is odd about it, as that of an operator does."""
     settings = context.scene.pantin
-    motion = capture(context, armature_of(context), settings.deforming_only)
+    armature = armature_of(context)
+    motion, left_out = capture(context, armature, settings.deforming_only, frames)
+    for text in left_out:
+        report({"WARNING"}, text)
     manager = context.window_manager
     manager.progress_begin(0, 1)
     try:
         options = {"max_scalar_error": settings.scalar_bound, "effort": settings.effort}
+        options["events"] = events(context.scene, *(frames or frame_range(context.scene, armature)))
         with warnings.catch_warnings():
             # They are shown below, each time.
             warnings.simplefilter("ignore", pantin.ConversionWarning)
@@ -66,7 +85,8 @@ def convert(context, report):
         parts.append(f"{measured['max_error_cm']:.3f} cm off at most ({measured['worst_joint']} at frame {measured['worst_frame']})")
     if clip.scalar_names:
         parts.append(f"weights {measured['max_scalar_error_percent']:.2f} % off at most")
-    settings.result = "; ".join(parts)
+    if frames is None:
+        settings.result = "; ".join(parts)
     show_notes(clip, report)
     return clip
 
@@ -103,7 +123,21 @@ class Guarded:
         return {"FINISHED"}
 
 
-class PANTIN_OT_export(Guarded, bpy.types.Operator, ExportHelper):
+class OfAction:
+    """An operator for the action of the active armature."""
+
+    @classmethod
+    def poll(cls, context):
+        try:
+            armature = armature_of(context)
+            frame_range(context.scene, armature)
+        except Refused as error:
+            cls.poll_message_set(str(error))
+            return False
+        return True
+
+
+class PANTIN_OT_export(Guarded, OfAction, bpy.types.Operator, ExportHelper):
     """Write the active action as a clip within the bound"""
 
     bl_idname = "pantin.export"
@@ -111,23 +145,30 @@ class PANTIN_OT_export(Guarded, bpy.types.Operator, ExportHelper):
     filename_ext = ".ptn"
     filter_glob: bpy.props.StringProperty(default="*.ptn", options={"HIDDEN"})
 
+    def invoke(self, context, event):
+        data = armature_of(context).animation_data
+        if not self.filepath and data.action is not None:
+            self.filepath = f"{bpy.path.clean_name(data.action.name)}.ptn"
+        return ExportHelper.invoke(self, context, event)
+
+    def draw(self, context):
+        settings_drawn(self.layout, context)
+
     def run(self, context):
         convert(context, self.report).save(self.filepath)
         return context.scene.pantin.result
 
 
-class PANTIN_OT_preview(Guarded, bpy.types.Operator):
-    """Show the current frame as a display of 128x64 pixels shows the clip"""
+class PANTIN_OT_preview(Guarded, OfAction, bpy.types.Operator):
+    """Show the current frame as a display of 128x64 pixels shows it"""
 
     bl_idname = "pantin.preview"
     bl_label = "Preview"
 
     def run(self, context):
-        clip = convert(context, self.report)
-        action = armature_of(context).animation_data.action
-        first = int(action.frame_range[0]) if action else context.scene.frame_start
-        show(clip, context.scene.frame_current - first)
-        return context.scene.pantin.result
+        now = context.scene.frame_current
+        show(convert(context, self.report, (now, now)), 0)
+        return f"frame {now}"
 
 
 class PANTIN_OT_import(Guarded, bpy.types.Operator, ImportHelper):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .operators import IMAGE, PANTIN_OT_export, PANTIN_OT_import, PANTIN_OT_preview
+from .operators import IMAGE, PANTIN_OT_export, PANTIN_OT_import, PANTIN_OT_preview, settings_drawn
 
 
 class PANTIN_PT_clip(bpy.types.Panel):
@@ -15,9 +15,7 @@ class PANTIN_PT_clip(bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.pantin
-        layout.use_property_split = True
-        for name in ("bound", "scalar_bound", "effort", "deforming_only"):
-            layout.prop(settings, name)
+        settings_drawn(layout, context)
         layout.operator(PANTIN_OT_preview.bl_idname)
         image = bpy.data.images.get(IMAGE)
         if image is not None:

@@ -229,6 +229,66 @@ def refused(match, **arguments):
         bpy.ops.pantin.export(**arguments)
 
 
+def human(scene):
+    """The human of Blender's own generator of rigs, which bows and waves."""
+    import addon_utils
+
+    addon_utils.enable("rigify", default_set=True)
+    bpy.ops.object.armature_human_metarig_add()
+    bpy.ops.pose.rigify_generate()
+    armature = bpy.data.objects["rig"]
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = armature
+    armature.select_set(True)
+    bones = armature.pose.bones
+    bones["upper_arm_parent.R"]["IK_FK"] = 1.0
+    for frame, down, degrees in [(1, 0, 0), (11, -0.05, -60), (21, -0.1, -110), (31, 0, 0)]:
+        bones["torso"].location = (0, 0, down)
+        bones["torso"].keyframe_insert("location", frame=frame)
+        bones["upper_arm_fk.R"].rotation_mode = "XYZ"
+        bones["upper_arm_fk.R"].rotation_euler = (math.radians(degrees), 0, 0)
+        bones["upper_arm_fk.R"].keyframe_insert("rotation_euler", frame=frame)
+    return armature
+
+
+def test_a_generated_human_hangs_together_and_is_where_it_was(scene, tmp_path):
+    armature = human(scene)
+    scene.pantin.bound = 1.0
+    said = []
+    clip = pantin_addon.operators.convert(bpy.context, lambda levels, text: said.append((*levels, text)))
+    names = [joint.name for joint in clip.joints]
+    assert all(joint.end_site or joint.name.startswith("DEF-") for joint in clip.joints), names
+    above = {joint.name: names[joint.parent] for joint in clip.joints if joint.parent is not None and not joint.end_site}
+    for name, parent in [("thigh.L", "spine"), ("shoulder.R", "spine.003"), ("upper_arm.R", "shoulder.R"), ("shin.L", "thigh.L.001")]:
+        assert above[f"DEF-{name}"] == f"DEF-{parent}"
+    assert [joint.name for joint in clip.joints if joint.parent is None] == ["DEF-spine"]
+    warnings = [text for level, text in said if level == "WARNING"]
+    assert any("the scales of bone `DEF-" in text and "are left out: at most" in text for text in warnings), said
+    joints = [index for index, joint in enumerate(clip.joints) if not joint.end_site]
+    for frame in range(1, 32):
+        bpy.context.scene.frame_set(frame)
+        own = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        heads = 100 * np.array([own.matrix_world @ own.pose.bones[names[index]].head for index in joints])
+        assert np.linalg.norm(clip.positions()[frame - 1, joints] - heads, axis=1).max() <= 1.0 + 1e-3
+
+
+def test_a_small_stretch_is_left_out_with_a_warning(tmp_path):
+    armature = rig()
+    armature.pose.bones["arm"].scale = (1, 1.01, 1)
+    seen = []
+    pantin_addon.operators.convert(bpy.context, lambda levels, text: seen.append((*levels, text)))
+    assert seen[0] == ("WARNING", "the scales of bone `arm` are left out: at most 0.99 %, at frame 1; all joints keep their places")
+
+
+def test_markers_are_events(scene, tmp_path):
+    rig()
+    for name, frame in [("late", 60), ("step", 11), ("start", 1)]:
+        scene.timeline_markers.new(name, frame=frame)
+    path = str(tmp_path / "marked.ptn")
+    bpy.ops.pantin.export(filepath=path)
+    assert pantin.Clip.open(path).events == [(0, "start"), (10, "step")]
+
+
 def test_what_is_no_motion_is_named(tmp_path):
     path = str(tmp_path / "x.ptn")
     refused("no armature is active", filepath=path)
