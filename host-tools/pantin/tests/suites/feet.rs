@@ -45,6 +45,8 @@ struct Measured {
     pelvis_cm: f64,
     /// The farthest that a foot moves over the ground in one transition while it is not held.
     dragged_cm: f64,
+    /// The farthest that the hips go back in one transition.
+    back_cm: f64,
     /// The greatest change of an ankle's velocity, in cm a picture, and the same if nothing holds the feet.
     jerk_cm: f64,
     free_jerk_cm: f64,
@@ -122,6 +124,30 @@ struct Picture {
     places: Vec<[f64; 3]>,
     held: Vec<bool>,
     transition: Option<usize>,
+}
+
+/// The farthest that the hips go back in one transition, against their velocity before or after it, whichever is greater: 20 cm a second at least.
+fn back(pictures: &[Picture], hips: usize, up: usize, rate: u16) -> f64 {
+    let step = |at: usize| {
+        let way = |axis: usize| pictures[at].places[hips][axis % 3] - pictures[at - 1].places[hips][axis % 3];
+        [way(up + 1), way(up + 2)]
+    };
+    let along = |[a, b]: [f64; 2], [x, y]: [f64; 2]| a * x + b * y;
+    let mut most = 0f64;
+    let mut at = 2;
+    while at + 1 < pictures.len() {
+        let (from, transition) = (at, pictures[at].transition);
+        while at + 1 < pictures.len() && pictures[at].transition == transition {
+            at += 1;
+        }
+        let [before, after] = [step(from - 1), step(at)];
+        let ahead = if along(after, after) > along(before, before) { after } else { before };
+        let speed = along(ahead, ahead).sqrt();
+        if transition.is_some() && speed * f64::from(rate) > 20.0 {
+            most = most.max((from..at).map(|at| (-along(step(at), ahead) / speed).max(0.0)).sum());
+        }
+    }
+    most
 }
 
 /// The farthest that a foot moves over the ground in one transition while it is not held. A foot that rolls about one of its joints does not.
@@ -239,6 +265,7 @@ fn measure(bytes: &[u8], text: &str, rate: u16) -> Measured {
         .map(|row| std::iter::once(row.ankle).chain(row.points().iter().copied()).map(usize::from).collect())
         .collect();
     measured.dragged_cm = dragged(&pictures, &joints, up);
+    measured.back_cm = back(&pictures, hips, up, rate);
     let places: Vec<Vec<[f64; 3]>> = pictures.into_iter().map(|picture| picture.places).collect();
     let (free, free_cm) = free(bytes, replay(), up);
     measured.free_cm = free_cm;
@@ -271,6 +298,8 @@ const DRAGGED_CM: f64 = 12.0;
 /// By how much holding the feet may change the velocity of an ankle in a picture more than its clips do.
 const JERK: f64 = 1.5;
 
+/// How far the hips may go back where a figure starts or stops, in cm.
+const BACK_CM: f64 = 5.0;
 /// How much more knees may bend the other way than in the clips and their transitions, in degrees.
 const BACKWARDS: f64 = 3.0;
 /// By how much holding the feet may change the velocity of a knee in a picture more than its clips do: a nearly straight leg bends its knee far.
@@ -465,6 +494,21 @@ fn no_foot_is_dragged_over_the_ground() {
         let measured = measure(&bytes, UNLIKE.session, rate);
         println!("{}, {rate} pictures a second: {measured:.3?}", UNLIKE.name);
         assert!(measured.dragged_cm <= DRAGGED_CM && measured.intervals > 10, "{measured:?}");
+    }
+}
+
+/// A figure that stops does not rock back over its foot on the ground.
+#[test]
+fn figures_do_not_go_back_where_they_start_and_stop() {
+    for own in [UNLIKE, STRAIGHT] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some(bank) = captured(&own, folder.path()) else { return };
+        let bytes = machine(&bank, own.machine);
+        for rate in [30, 60, 120] {
+            let measured = measure(&bytes, own.session, rate);
+            println!("{}, {rate} pictures a second: {:.1} cm back", own.name, measured.back_cm);
+            assert!(measured.back_cm <= BACK_CM, "{}: {measured:?}", own.name);
+        }
     }
 }
 
