@@ -665,6 +665,7 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
         wide_subtract(at, at, other);
         wide_add(s->anchor, s->anchor, at);
         s->point = contact;
+        s->lowest = INT64_MAX;
     } else if (s->doing != LOCKED && contact != NO_POINT) {
         world_of(p, leg, contact, at);
         point_with_left(s, at, at);
@@ -674,12 +675,21 @@ static void update_foot(const posed_foot *p, uint8_t contact, int calm, uint32_t
             s->point = contact;
             memcpy(s->anchor, at, sizeof at);
             s->level = 0;
+            s->lowest = INT64_MAX;
         }
     }
     if (s->doing == LOCKED) {
+        int64_t height;
         world_of(p, leg, s->point, at);
+        height = p->foot->upside_down ? wide_difference(0, at[2]) : at[2];
         wide_subtract(at, s->anchor, at);
         keep(p->foot, p->shift, at, calm, elapsed_us);
+        s->lowest = least(s->lowest, height);
+        /* The other clip of a blend lifts it. */
+        if (s->doing == LOCKED && wide_difference(height, s->lowest) > length_of(p->foot, p->shift) / 12) {
+            release(p->foot, p->shift, 0);
+            s->steps = 1;
+        }
     } else if (s->since_us[0] == whole[0] && s->since_us[1] == RELEASE_US) {
         s->doing = FREE;
         s->lift = 0;
@@ -870,6 +880,7 @@ static void enter(pantin_character *c, const standing *now, const uint8_t *conta
         s->point = s->before = contacts[i];
         memcpy(s->anchor, anchors[i], sizeof s->anchor);
         s->level = 1;
+        s->lowest = INT64_MAX;
     }
 }
 

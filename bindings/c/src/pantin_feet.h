@@ -43,6 +43,7 @@ typedef struct pantin_ease {
 typedef struct pantin_foot_state {
     int64_t at[3];     /* where the point that was on the ground was in the world */
     int64_t anchor[3]; /* where the held point stays */
+    int64_t lowest;    /* the least height over the ground at which the pose had it */
     pantin_ease flat[2], rise;
     uint32_t since_us[2]; /* since the foot was let go, and since its height was */
     uint32_t step_us;     /* the time in which it comes to its clip's place */

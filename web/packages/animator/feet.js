@@ -190,6 +190,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     let last = anchor;
     // Whether the height stays, too; whether it is not held before it has come back to its clip; how high it is lifted on its way, and how long that takes.
     let isLevel, steps;
+    // The least height over the ground at which the pose had the held point.
+    let lowest;
     let lift = 0;
     let whole = RELEASE;
     // For two horizontal axes and the height, a distance from the clip that dies out, the one that it would go in the whole time at its velocity, and the time since it was let go.
@@ -264,6 +266,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         if (point >= 0) release(false, max(abs(eases[0][0]), abs(eases[1][0])));
       } else if (point >= 0) {
         anchor = anchorAt(world, contact);
+        if (point !== contact) lowest = undefined;
         point = contact;
       } else {
         const place = withLeft();
@@ -274,16 +277,22 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
           point = contact;
           anchor = place;
           isLevel = false;
+          lowest = undefined;
         }
       }
       if (point >= 0) {
-        const way = apart(anchor, world(point));
+        const at = world(point);
+        const way = apart(anchor, at);
+        const height = big(upward) * at[2];
         eases = eases.map((ease, axis) => {
           const d = narrow(way[axis]);
           return axis < 2 || isLevel ? [d, elapsed ? narrow(trunc((((d - ease[0]) | 0) * RELEASE) / elapsed)) : 0, 0] : ease;
         });
         isLevel &&= !isCalm;
         if (farther(way) > length() >> 2) letGo();
+        if (!(lowest <= height)) lowest = height;
+        // The other clip of a blend lifts it.
+        if (point >= 0 && height - lowest > floor(length() / 12)) release(true, 0);
       } else if (isWhole()) {
         lift = 0;
       }
@@ -322,6 +331,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         point = contact;
         anchor = place;
         isLevel = true;
+        lowest = undefined;
         return;
       }
       if (point < 0) {

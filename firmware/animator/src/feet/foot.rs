@@ -41,6 +41,8 @@ pub(super) struct Foot<'a> {
     /// Where the locked point stays. The height stays while `level`.
     anchor: [i64; 3],
     level: bool,
+    /// The least height over the ground at which the pose had the locked point.
+    lowest: i64,
     /// Let go because the clip has it elsewhere: it is not held again before it has come there, in a time of its own.
     steps: bool,
     step_us: u32,
@@ -87,6 +89,7 @@ impl<'a> Foot<'a> {
             at: [0; 3],
             anchor: [0; 3],
             level: false,
+            lowest: i64::MAX,
             steps: false,
             step_us: RELEASE_US,
             flat: [Ease::default(); 2],
@@ -142,6 +145,7 @@ impl<'a> Foot<'a> {
     /// Goes on being held in another clip, at a point and a place, until the transition has ended at this height.
     pub(super) fn hold_on(&mut self, point: u8, anchor: [i64; 3]) {
         (self.state, self.anchor, self.level, self.before) = (State::Locked(point), anchor, true, Some(point));
+        self.lowest = i64::MAX;
     }
 
     /// Enters a clip in which its place is `far` away along one axis, and steps there while a transition of `left_us` runs. If it is on the ground
@@ -227,7 +231,7 @@ impl<'a> Foot<'a> {
         match (self.state, contact) {
             (State::Locked(own), Some(point)) if own != point => {
                 self.anchor = sum(self.anchor, difference(world(point), world(own)));
-                self.state = State::Locked(point);
+                (self.state, self.lowest) = (State::Locked(point), i64::MAX);
             }
             (State::Locked(_), Some(_)) => {}
             (State::Locked(_), None) => self.release(self.flat.map(|own| i64::from(own.d).abs()).into_iter().fold(0, i64::max)),
@@ -235,7 +239,7 @@ impl<'a> Foot<'a> {
                 let at = sum(world(point), self.left().map(i64::from));
                 if self.lands(point, at, calm, elapsed_us) {
                     self.rest();
-                    (self.state, self.anchor, self.level) = (State::Locked(point), at, false);
+                    (self.state, self.anchor, self.level, self.lowest) = (State::Locked(point), at, false, i64::MAX);
                 }
             }
             (_, None) => {}
@@ -243,6 +247,14 @@ impl<'a> Foot<'a> {
         if let State::Locked(point) = self.state {
             let at = frame.to_world(self.point(pose, &places, point));
             self.keep(difference(self.anchor, at), calm, elapsed_us);
+            let [.., height] = at;
+            let height = if self.upside_down { height.wrapping_neg() } else { height };
+            self.lowest = self.lowest.min(height);
+            // The other clip of a blend lifts it.
+            if self.held().is_some() && height.wrapping_sub(self.lowest) > i64::from(self.limb.length() / 12) {
+                self.release(0);
+                self.steps = true;
+            }
         } else if self.since_us == whole {
             (self.state, self.lift) = (State::Free, 0);
         }

@@ -118,7 +118,10 @@ fn choices(motion: &Motion, steps: &[f64], most: Most) -> Vec<Vec<usize>> {
         Most::Distance(bound, _) => bound.max_cm / motion.rig.cm_per_unit,
         Most::Channels(bounds) => bounds.greatest[channel],
     };
-    let moved = (0..steps.len()).filter(|&channel| steps[channel] != 0.0 && places_root(motion, kinds[channel]));
+    // A figure goes over the ground: a height that does not come back is a part of the seam.
+    let level = |kind: Kind| kind.axis() != Some(motion.rig.up.axis());
+    let goes = |channel: usize| places_root(motion, kinds[channel]) && level(kinds[channel].1);
+    let moved = (0..steps.len()).filter(|&channel| steps[channel] != 0.0 && goes(channel));
     let (far, near): (Vec<usize>, Vec<usize>) = moved.partition(|&channel| steps[channel].abs() > limit(channel));
     // Channels that are bounded one by one need no choice.
     let near = if matches!(most, Most::Channels(_)) { &[][..] } else { &near[..near.len().min(WAYS)] };

@@ -390,7 +390,10 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
         arguments.max_rotation_error.map_or_else(String::new, |most| format!(" whose seam turns no joint by {most} degrees"));
     ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle{within}", place());
     if !cuts.iter().any(|cut| cut.still) {
-        note!("{}: no line for standing: the figure moves all the time, or stands for less than a second", place());
+        let turned = arguments
+            .max_rotation_error
+            .map_or_else(String::new, |most| format!(", or a joint turns by {most} degrees at the seam"));
+        note!("{}: no line for standing: the figure moves all the time, or stands for less than a second{turned}", place());
     }
     Ok(())
 }

@@ -129,6 +129,20 @@ fn proposed_loops_keep_a_bound_on_rotations() {
 }
 
 #[test]
+fn a_height_that_does_not_come_back_is_no_way() {
+    let folder = super::outputs::Folder::new();
+    let rows: String = (0..31).map(|frame| format!(" {frame} {} {}\n", 2 * frame, 90.0 + f64::from(frame) / 15.0)).collect();
+    let figure = "joint hips offset 0 0 0 channels Xposition Yposition\nend parent hips offset 0 60 0\n";
+    folder.put("slope.keys", format!("keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n{figure}keys linear hips\n{rows}"));
+    let looped = |bound| ["convert", "slope.keys", "--loop", "-o", "slope.ptn", "--max-error", bound];
+    let said = folder.refused(&looped("1cm"));
+    assert!(said.contains("hips is 2.000 cm off in the last frame"), "{said}");
+    // Closed with the seam; the way over the ground stays.
+    let said = super::outputs::err(&folder.done(&looped("3cm")));
+    assert!(said.contains("hips.Xposition goes 60") && !said.contains("Yposition goes"), "{said}");
+}
+
+#[test]
 fn a_motion_that_is_one_cycle_is_proposed_whole_and_standing_apart() {
     let folder = super::outputs::Folder::new();
     let figure = "joint hips offset 0 90 0 channels Xposition Zrotation\nend parent hips offset 0 60 0\n";
