@@ -537,7 +537,7 @@ static int lands(const pantin_foot *f, int16_t shift, uint8_t point, const int64
     /* Half of the leg in a second. */
     int64_t slow = (int64_t)length_of(f, shift) * elapsed_us / 2000000;
     uint8_t i, rests = s->before == point;
-    if (s->before == NO_POINT) return 1;
+    if (s->before == NO_POINT) return calm;
     for (i = 0; i < 3; i++) rests = (uint8_t)(rests && wide_size(wide_difference(at[i], s->at[i])) <= slow);
     return s->steps ? calm && s->since_us[0] >= s->step_us && rests : calm || rests;
 }
@@ -1125,22 +1125,25 @@ static pantin_result correct(pantin_character *c, uint32_t elapsed_us) {
     pantin_state_row row;
     pantin_result result = PANTIN_OK;
     uint32_t frame = a->track.player.frame;
-    uint8_t contacts[PANTIN_FEET], i;
+    uint8_t contacts[PANTIN_FEET], blends, i;
     if (f->stale || (c->entered && (f->exponent != a->track.clip.exponent || f->coding != a->track.clip.coding))) result = find_legs(f, a);
     if (result != PANTIN_OK) return result;
     f->stale = 0;
     /* Of two clips that are blended the figure has the feet of the one that there is more of. */
     pantin_animator_read_state(c, c->state, &row);
-    if (c->second && c->blending && row.other != PANTIN_NO_CLIP && c->mixed > 1u << 14) {
+    blends = c->second && c->blending && row.other != PANTIN_NO_CLIP;
+    if (blends && c->mixed > 1u << 14) {
         row.clip = row.other;
         frame = c->second->player.frame;
     }
+    /* Whether there is some of both. */
+    blends = blends && c->mixed > 0 && c->mixed < 1u << 15;
     for (i = 0; i < f->count; i++) contacts[i] = contact_of(c, f, row.clip, i, frame);
     stand(&now, &a->placement, a->axis);
     if (c->entered) enter(c, &now, contacts);
     for (i = 0; i < f->count; i++) {
         posed_foot p = {&f->feet[i], a->pose, &now, f->shift};
-        update_foot(&p, contacts[i], a->left == 0, elapsed_us, &legs[i]);
+        update_foot(&p, contacts[i], a->left == 0 && !blends, elapsed_us, &legs[i]);
     }
     apply(c, legs, elapsed_us);
     return PANTIN_OK;

@@ -149,8 +149,8 @@ impl<'a, 'm> Character<'a, 'm> {
             layer.update(elapsed_us, &self.machine, &mut self.animator)?;
         }
         if let Some((feet, hold, _)) = &mut self.feet {
-            let (clip, frame) = self.machine.on_the_ground(&self.animator, self.second.as_ref());
-            hold(feet, &mut self.animator, Instant { clip, frame, entered: updated.entered.is_some(), elapsed_us })?;
+            let (clip, frame, blended) = self.machine.on_the_ground(&self.animator, self.second.as_ref());
+            hold(feet, &mut self.animator, Instant { clip, frame, blended, entered: updated.entered.is_some(), elapsed_us })?;
         }
         Ok(updated)
     }

@@ -359,13 +359,14 @@ impl<'a> Machine<'a> {
         self.mixed = Weight::from_bits(to);
     }
 
-    /// The clip, and its frame, whose feet the figure has: of two that are blended the one that there is more of.
-    pub(crate) fn on_the_ground(&self, animator: &Animator<'_, '_>, second: Option<&Track<'_, '_>>) -> (u8, u32) {
+    /// The clip, and its frame, whose feet the figure has: of two that are blended the one that there is more of. And whether there is some of both.
+    pub(crate) fn on_the_ground(&self, animator: &Animator<'_, '_>, second: Option<&Track<'_, '_>>) -> (u8, u32, bool) {
         let row = self.table.state(self.state);
         let other = row.and_then(|row| row.blend).filter(|_| self.blending);
+        let part = self.mixed.to_bits();
         match (other, second) {
-            (Some((clip, _)), Some(track)) if self.mixed.to_bits() > 1 << 14 => (clip, track.frame()),
-            _ => (row.map_or(0, |row| row.clip), animator.track().frame()),
+            (Some((clip, _)), Some(track)) if part > 1 << 14 => (clip, track.frame(), part < 1 << 15),
+            (other, _) => (row.map_or(0, |row| row.clip), animator.track().frame(), other.is_some() && part > 0),
         }
     }
 

@@ -272,7 +272,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         const place = withLeft();
         // Half of the leg in a second.
         const rests = before === contact && apart(place, last).every((x) => size(x) <= (big(length()) * big(elapsed)) / 2000000n);
-        if (before < 0 || (steps ? isCalm && eases[0][2] === whole && rests : isCalm || rests)) {
+        if (before < 0 || !steps ? isCalm || rests : isCalm && eases[0][2] === whole && rests) {
           settle();
           point = contact;
           anchor = place;
@@ -483,14 +483,14 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       // Rounded up, so that the frame is reached.
       if (least < Infinity) return [start, Number((big((least + behind) * 65536 - part) * big(clip.frameTimeNs) + big(speed - 1)) / big(speed))];
     },
-    hold: (clip, frame, entered, elapsed) => {
+    hold: (clip, frame, isBlended, entered, elapsed) => {
       if (entered) find();
       const axes = frameOf(animator.placement);
       // The points that are on the ground.
       const rows = contacts.slice(ends[clip - 1] ?? 0, ends[clip]);
       const found = feet.map((_, foot) => rows.find(([own, , from, to]) => own === foot && frame >= from && frame < to)?.[1] ?? -1);
       if (entered) enterAll(axes, found);
-      const wanted = feet.map(([, , , , update], foot) => update(axes, found[foot], !animator.left, elapsed));
+      const wanted = feet.map(([, , , , update], foot) => update(axes, found[foot], !animator.left && !isBlended, elapsed));
       // 2 cm, at most.
       const most = shifted(shifted(min(floor((2000000 * 256) / round(rig.cmPerUnit * 1e6)), 2 ** 30), exponent + 8), shift);
       const goal = min(most, max(0, ...feet.map(([, , , , , dropTo], foot) => wanted[foot] ? dropTo(wanted[foot]) : 0)));

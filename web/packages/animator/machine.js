@@ -284,7 +284,7 @@ export const characterOf = (rig, table, open, lendFeet) => {
       // Of two clips that are blended the figure has the feet of the one that there is more of.
       const { clip, other } = row();
       const [own, { player }] = isBlending && mixed > WHOLE / 2 ? [other, second] : [clip, track];
-      feet?.hold(own, player.frame, entered, elapsed);
+      feet?.hold(own, player.frame, isBlending && mixed > 0 && mixed < WHOLE, entered, elapsed);
     },
     // Some poses of the states' clips, with the root at the origin.
     *poses() {

@@ -284,7 +284,7 @@ impl<'a> Foot<'a> {
         let slow = (i64::from(self.limb.length()) * i64::from(elapsed_us)) / 2_000_000;
         let rests = self.before == Some(point) && difference(at, self.at).iter().all(|way| way.abs() <= slow);
         match self.before {
-            None => true,
+            None => calm,
             Some(_) if self.steps => calm && since >= self.step_us && rests,
             Some(_) => calm || rests,
         }

@@ -37,6 +37,8 @@ pub(crate) struct Instant {
     /// The clip's index in the bank.
     pub(crate) clip: u8,
     pub(crate) frame: u32,
+    /// Whether a part of another clip is in the pose.
+    pub(crate) blended: bool,
     /// Whether a state was entered in this update.
     pub(crate) entered: bool,
     pub(crate) elapsed_us: u32,
@@ -193,7 +195,7 @@ pub(crate) fn hold<'a>(feet: &mut Feet<'a>, animator: &mut Animator<'a, '_>, now
     if now.entered {
         feet.enter(animator, &frame, contacts);
     }
-    let calm = animator.transition_left() == 0;
+    let calm = animator.transition_left() == 0 && !now.blended;
     let mut wanted = [None; FEET];
     for ((foot, contact), wanted) in feet.feet.iter_mut().zip(contacts).zip(&mut wanted) {
         *wanted = foot.update(animator.pose, &frame, contact, calm, now.elapsed_us);
