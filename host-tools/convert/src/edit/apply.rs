@@ -10,7 +10,7 @@ use super::in_place::in_place;
 use super::join::join;
 use super::loop_seam;
 use super::mirror::mirror;
-use super::pace::pace;
+use super::pace::{Pace, pace};
 use super::pick::pick;
 use super::rename::rename;
 use super::resample::resample;
@@ -263,7 +263,12 @@ impl Edits {
         if let Some(wanted) = self.pace {
             let (walking, speed) = pace(motion, wanted, self.memory)?;
             *motion = walking;
-            notes.push(Note::info(NoteKind::Travel, format!("pace: the figure goes {speed:.1} cm a second")));
+            let text = if speed == 0.0 && wanted == Pace::Feet {
+                "pace: its feet stand on the ground as it goes, so the figure gets no other way".into()
+            } else {
+                format!("pace: the figure goes {speed:.1} cm a second")
+            };
+            notes.push(Note::info(NoteKind::Travel, text));
         }
         Ok(())
     }

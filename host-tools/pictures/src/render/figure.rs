@@ -109,7 +109,9 @@ impl<'a, 'm> Figure<'a, 'm> {
         };
         let mut bodies_in = |area: Canvas, on_neck: bool| {
             let mut body_of = |view: &View| {
-                let mut body = SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn")?;
+                let mut body = SolidFigure::of_clip(&mut player, area, *view, look).context(
+                    "this figure cannot be drawn; `pantin convert --retarget display` makes a clip of its motion that can be",
+                )?;
                 if style == Style::Lines || on_neck {
                     body.make_room(style != Style::Lines);
                     body.set_bare_face(on_neck);
