@@ -193,7 +193,8 @@ fn the_text_of_a_state_machine_is_edited_in_the_page() {
     let mut tool = Command::new(build::host_tool().unwrap());
     tool.arg("machine").arg(&file).arg("--bank").arg(own("character.ptb")).arg("-o").arg(&bank).arg("--quiet");
     assert!(tool.status().unwrap().success());
-    drive("machine", json!({ "text": text, "edited": edited, "bank": bank }));
+    let bytes = std::fs::metadata(own("character.ptb")).unwrap().len();
+    drive("machine", json!({ "text": text, "edited": edited, "bank": bank, "bytes": bytes }));
 }
 
 #[test]
