@@ -8,7 +8,6 @@ import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/d
 import { animatorOf } from "../../web/packages/animator/animator.js";
 import { bankOf } from "../../web/packages/player/bank.js";
 import { opened } from "../../web/packages/animator/open.js";
-import { feetOf } from "../../web/packages/animator/feet.js";
 import { figureOf, maths } from "../../web/packages/player/figure.js";
 import { partOf, setSpeed } from "../../web/packages/animator/track.js";
 
@@ -61,7 +60,7 @@ function steer(file) {
     const bank = bankOf(file, [fieldsOf, checked, (bytes) => openRawRig(bytes, LIVE_LINK), openRawClip, figureOf, maths]);
     // The element plays the clips of such a bank.
     if (!bank.machine) throw new Error("pantin: no state machine");
-    character = opened(bank, keys, feetOf);
+    character = opened(bank, keys);
   };
   if (refuses(open)) return out.push("refused\n");
   const { animator } = character;

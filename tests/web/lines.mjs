@@ -6,7 +6,6 @@ import { checked, fieldsOf, openRawClip, openRawRig } from "../../web/packages/d
 import { openClip } from "../../web/packages/decoder/index.js";
 import { bankOf } from "../../web/packages/player/bank.js";
 import { steer } from "../../web/packages/player/character.js";
-import { feetOf } from "../../web/packages/animator/feet.js";
 import { figureOf, maths, visitor } from "../../web/packages/player/figure.js";
 
 const SIZES = [[128, 64], [320, 160], [640, 320], [390, 700]];
@@ -98,7 +97,7 @@ const bytes = readFileSync(character);
 put(bytes);
 assert.equal(wasm.machine(slot, file, bytes.length), 0);
 const player = { draw() {}, dispatchEvent() {} };
-const actor = steer(bankOf(bytes, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]), player, undefined, feetOf);
+const actor = steer(bankOf(bytes, [fieldsOf, checked, openRawRig, openRawClip, figureOf, maths]), player, undefined);
 const states = new Set();
 let turn = 0;
 const pass = (time) => {

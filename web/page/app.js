@@ -203,22 +203,17 @@ async function copy(button, text) {
   setTimeout(() => (button.textContent = words), 1500);
 }
 
-// A link to what plays: by its name in the gallery, or with the clip itself.
-async function link() {
+// Copies a link to a clip: by its name in the gallery, or with the clip itself.
+function share(button, clip) {
   const url = new URL(location.pathname, location);
-  if (!current) return url.href;
-  if (current.data) {
-    const data = new Uint8Array(current.data);
-    if (data.length > MOST_SHARED) return null;
+  if (clip?.data) {
+    const data = new Uint8Array(clip.data);
+    if (data.length > MOST_SHARED) return trouble(`The clip is too large for a link: ${bytes(data.length)}, at most ${bytes(MOST_SHARED)}.`);
     url.hash = `ptn=${base64(data)}`;
-  } else url.searchParams.set("clip", current.name);
-  return url.href;
+  } else if (clip) url.searchParams.set("clip", clip.name);
+  copy(button, url.href);
 }
-$("share").onclick = async () => {
-  const text = await link();
-  if (text) copy($("share"), text);
-  else trouble(`The clip is too large for a link: ${bytes(current.data.byteLength)}, at most ${bytes(MOST_SHARED)}.`);
-};
+$("share").onclick = () => share($("share"), current);
 $("copy").onclick = () => copy($("copy"), $("embed").textContent);
 $("copy-npm").onclick = () => copy($("copy-npm"), $("npm").textContent);
 
@@ -360,6 +355,8 @@ gallery().catch((error) => table($("facts"), [["gallery", error.message]]));
 // ---- motions that are dropped
 
 let worker = null;
+// The effort that shows something at once.
+const QUICK = "fast";
 
 // The page's words for what the converter reports by name: its own fields, where it has one.
 const SETTINGS = {
@@ -445,7 +442,7 @@ async function take(files) {
       const names = given.flatMap(animationsOf);
       $("animations").hidden = names.length < 2;
       $("animation").replaceChildren(...names.map((name, index) => new Option(name, index)));
-      return convert();
+      return convert(QUICK, $("effort").value);
     }
     done();
     trouble(`${first.name}: cannot be read.`);
@@ -453,8 +450,8 @@ async function take(files) {
   $("result").hidden = true;
 }
 
-// Converts the last files, as the fields say. What was converted before stays until there is something else.
-function convert(effort = $("effort").value) {
+// Converts the last files, as the fields say. What was converted before stays until there is something else. `then` is an effort with which they are converted once more.
+function convert(effort = $("effort").value, then = effort, doing = "fitting") {
   done();
   trouble("");
   $("working").hidden = false;
@@ -472,12 +469,13 @@ function convert(effort = $("effort").value) {
   worker.onmessage = ({ data }) => {
     if (data.progress !== undefined) {
       $("progress").value = data.progress;
-      $("step").textContent = `fitting, ${Math.floor(100 * data.progress)} %`;
+      $("step").textContent = `${doing}, ${Math.floor(100 * data.progress)} %`;
     } else if (data.refused) failed(sentence(data.refused));
     else if (data.error) failed(data.error);
     else {
       done();
       shown(data, given).catch((error) => trouble(error.message));
+      if (then !== effort) convert(then, then, "making it smaller");
     }
   };
   worker.postMessage({ files: given, options });
@@ -491,7 +489,7 @@ function again(effort) {
 }
 $("slide").oninput = () => {
   $("cm").value = +(10 ** $("slide").value).toPrecision(2);
-  again("fast");
+  again(QUICK);
 };
 $("slide").onchange = () => again();
 $("cm").oninput = () => ($("slide").value = Math.log10(+$("cm").value || 0.5));
@@ -516,7 +514,24 @@ function save(link, name, content, type) {
   link.download = name;
 }
 
-async function shown({ report, clip, header, rig, poses, seconds }, files) {
+// What was converted, as a clip of the page.
+let made = null;
+$("share-clip").onclick = () => share($("share-clip"), made);
+
+// Programs that play it, once they are asked for.
+async function showPrograms() {
+  if (!$("programs").open || !made) return;
+  const { programs } = await import("./programs.js");
+  const all = programs(made.name, made.header);
+  if (!$("language").length) $("language").append(...all.map(({ language }) => new Option(language)));
+  const { needs, text } = all.find(({ language }) => language === $("language").value);
+  $("program-needs").textContent = needs;
+  $("program").textContent = text;
+}
+$("programs").ontoggle = $("language").onchange = () => showPrograms().catch((error) => ($("program-needs").textContent = `The programs cannot be fetched: ${error.message}.`));
+$("copy-program").onclick = () => copy($("copy-program"), $("program").textContent);
+
+async function shown({ report, clip, header, rig, poses, glb, seconds }, files) {
   const isNew = $("result").hidden;
   $("result").hidden = false;
   if (isNew) $("result").scrollIntoView({ block: "nearest", behavior: "smooth" });
@@ -524,7 +539,11 @@ async function shown({ report, clip, header, rig, poses, seconds }, files) {
   const size = files.reduce((sum, file) => sum + file.bytes.byteLength, 0);
   const at = converted.currentTime;
   save($("save"), `${stem}.ptn`, clip, "application/octet-stream");
+  save($("save-glb"), `${stem}.glb`, glb, "model/gltf-binary");
   save($("save-c"), `${stem}.h`, header, "text/x-c");
+  $("save-glb").hidden = !glb.length;
+  made = { name: stem, data: clip, header: new TextDecoder().decode(header) };
+  showPrograms();
   const { frames, channels, frame_time_ns, length_exponent } = report;
   const raw = frames * channels * 2;
   table($("report"), [

@@ -1,7 +1,7 @@
 // A worker that converts motions: the encoder, compiled to WebAssembly. A worker is for one motion; its memory goes with it.
 import { started } from "./wasm.js";
 
-const OUTPUTS = { CLIP: 1, HEADER: 2, RIG: 3, POSES: 4 };
+const OUTPUTS = { CLIP: 1, HEADER: 2, RIG: 3, POSES: 4, GLB: 5 };
 
 let module;
 let told = -1;
@@ -20,8 +20,8 @@ async function convert({ files, options }) {
   const seconds = (performance.now() - begun) / 1000;
   const report = module.report();
   if (!good) return { refused: report };
-  const [clip, header, rig, poses] = [OUTPUTS.CLIP, OUTPUTS.HEADER, OUTPUTS.RIG, OUTPUTS.POSES].map(module.output);
-  return { report, clip, header, rig, poses: new Int32Array(poses.buffer), seconds };
+  const [clip, header, rig, poses, glb] = [OUTPUTS.CLIP, OUTPUTS.HEADER, OUTPUTS.RIG, OUTPUTS.POSES, OUTPUTS.GLB].map(module.output);
+  return { report, clip, header, rig, poses: new Int32Array(poses.buffer), glb, seconds };
 }
 
 onmessage = async ({ data }) => {

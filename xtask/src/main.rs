@@ -19,12 +19,14 @@ enum Place {
     Package(&'static str),
     /// In the program of this package, which is optimized little: people wait for its compilation.
     Quick(&'static str),
+    /// In the program of this folder, which is a workspace of its own.
+    Alone(&'static str),
 }
 
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 31] = [
+const LIST: [(&str, Place, &str); 32] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -34,6 +36,7 @@ const LIST: [(&str, Place, &str); 31] = [
     ("arduino", COMMANDS, "Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("bindings", COMMANDS, "Tests the decoder in C with compilers and emulators; `test --bindings` is the same"),
+    ("book", Place::Alone("xtask/book"), "Builds the documentation as a site with search; `web` does it, too"),
     ("blender", COMMANDS, "Imports exports of our clips into Blender (bpy), and validates the glTF files"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
     (
@@ -93,6 +96,7 @@ fn run(arguments: &[String]) -> Result<ExitCode> {
         Place::Here(run) => run(rest).map(|()| ExitCode::SUCCESS),
         Place::Package(package) => program(&["--package", package], arguments),
         Place::Quick(package) => program(&["--profile", "demo", "--package", package], rest),
+        Place::Alone(folder) => alone(folder, rest),
     }
 }
 
@@ -103,7 +107,19 @@ fn help() -> String {
 
 /// Builds the program of a package and runs it; returns its exit code.
 fn program(which: &[&str], arguments: &[String]) -> Result<ExitCode> {
-    let status = cargo_run(which).args(arguments).status().context("cannot start cargo")?;
+    run_to_end(cargo_run(which).args(arguments))
+}
+
+/// Builds the program of a folder's own workspace and runs it.
+fn alone(folder: &str, arguments: &[String]) -> Result<ExitCode> {
+    let manifest = paths::root().join(folder).join("Cargo.toml");
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.args(["run", "--quiet", "--manifest-path"]).arg(manifest).arg("--target-dir").arg(paths::root().join("target/book"));
+    run_to_end(cargo.arg("--").args(arguments))
+}
+
+fn run_to_end(command: &mut Command) -> Result<ExitCode> {
+    let status = command.status().context("cannot start cargo")?;
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 

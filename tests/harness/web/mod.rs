@@ -12,7 +12,7 @@ pub use xtask::browser;
 pub use xtask_web::site::{
     CHARACTER, CONVERTER, EXPORT, FACE, MACHINE, OTHERS, PLAYER, Size, build, face_module, player_module, sizes,
 };
-pub use xtask_web::{arduino, browsers, bundle, tools};
+pub use xtask_web::{arduino, browsers, bundle, compare, tools};
 
 use crate::paths;
 

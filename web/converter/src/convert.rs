@@ -3,6 +3,8 @@
 use crate::sources::{self, Chosen, Given};
 use pantin::Clip;
 use pantin_convert::Level;
+use pantin_convert::expand::{Expanded, gather};
+use pantin_convert::export::gltf;
 use pantin_convert::export::source::c_header;
 use pantin_convert::import::animations;
 use pantin_convert::motion::Motion;
@@ -11,10 +13,10 @@ use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, 
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// The results of a conversion: the report, the clip, its C header, its rig, and the motion's own poses.
+/// The results of a conversion: the report, the clip, its C header, its rig, the motion's own poses, and the clip as a .glb, empty if nothing moves.
 #[derive(Default)]
 pub struct Outputs {
-    pub parts: [Vec<u8>; 5],
+    pub parts: [Vec<u8>; 6],
 }
 
 impl Outputs {
@@ -87,9 +89,11 @@ fn outputs(path: &Path, converted: &Converted, notes: Vec<Note>) -> anyhow::Resu
         ("length_exponent", json!(report.length_exponent)),
     ];
     fields.extend(facts.map(|(name, value)| (name.to_owned(), value)));
-    let header = c_header(&Clip::new_checked(clip)?, clip, &stem)?;
+    let opened = Clip::new_checked(clip)?;
+    let header = c_header(&opened, clip, &stem)?;
+    let glb = gltf::write(&Motion { looped: opened.looped(), ..gather(&Expanded::new(&opened))? }).unwrap_or_default();
     let poses = poses(motion, report.length_exponent)?;
-    Ok(Outputs { parts: [Value::from(fields).to_string().into_bytes(), clip.clone(), header.into_bytes(), rig.clone(), poses] })
+    Ok(Outputs { parts: [Value::from(fields).to_string().into_bytes(), clip.clone(), header.into_bytes(), rig.clone(), poses, glb] })
 }
 
 /// Returns the motion as raw values, frame by frame, little-endian: what an exact clip would play.

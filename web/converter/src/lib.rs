@@ -5,7 +5,7 @@
 //! ```text
 //! convert(options, their len)    -> 1 if there is a clip; the options are JSON
 //! ```
-//! Results: 0 the report as JSON, 1 the clip, 2 the clip as a C header, 3 its rig, 4 the motion's own poses, one raw value per channel and frame.
+//! Results: 0 the report as JSON, 1 the clip, 2 the clip as a C header, 3 its rig, 4 the motion's own poses, one raw value per channel and frame, 5 the clip as a .glb.
 //! The page provides `env.progress(part)`, part from 0 to 1.
 // The page calls this function, and finds and writes memory by plain addresses.
 #![allow(unsafe_code)]

@@ -5,7 +5,7 @@ import { PART, Q, abs, atan2, cosine, dot, eulerOf, floor, length, matrixOf, max
 export const big = BigInt;
 export const FREE = 0;
 const EULER = 1;
-const MAP = 2;
+export const MAP = 2;
 const QUATERNION = 3;
 // A weight of 1.
 export const WHOLE = 1 << 15;

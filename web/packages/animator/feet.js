@@ -1,44 +1,44 @@
-// What <pantin-player> loads for a bank with a table of feet, which stay where they are put: in states, and through transitions, which wait for a matching foot. The firmware's
+// Planted feet stay where they are put: in states, and through transitions, which wait for a matching foot. The firmware's
 // module feet, with chain.rs, two_bone.rs and ease.rs and the vectors of pantin-math, states each step. Places in the world are BigInts, as in animator.js.
-const { PI, abs, asin, clz32, floor, max, min, round, sin, sqrt, trunc } = Math;
-const big = BigInt;
-const ONE = 1 << 15;
-const HALF = ONE / 2;
+import { Q, abs, clz32, floor, max, min, normalize, round } from "../decoder/turning.js";
+import { MAP, MOST, big, clamp, headingOf, nearest, partsOf, rotated, weighted, wide, wideShifted, writtenTo } from "./channels.js";
+import { must } from "./machine-table.js";
+import { size } from "./track.js";
+
+const { PI, asin, sin, sqrt, trunc } = Math;
+const UNIT = 1 << 15;
+const HALF = UNIT / 2;
 const Q22 = 2 ** 22;
-const MOST = 2 ** 31 - 1;
-// The shape of a group that is an exponential map; of those below, angles one by one.
-const MAP = 2;
 // Where the inner parts of a figure have its rotations, and what places its joints.
-const TURNS = 5;
-const PLACE = 7;
+const FIGURE_TURNS = 5;
+const FIGURE_PLACE = 7;
 // Microseconds in which a foot that is let go comes back to its clip, and those of the longest step.
 const RELEASE = 200000;
-const LONGEST = 4000000;
+const LONGEST_STEP = 4000000;
 // Those in which a figure goes down or comes up by nearly two thirds of its way: nearly straight legs bend by the root of it.
 const DROP = 50000;
 // The sine of the least bend of a knee that shows its axis, 2 degrees.
-const LEAST_SINE = ONE / 28;
+const LEAST_SINE = UNIT / 28;
 const ORIGIN = [0, 0, 0];
 // Rotations are nine numbers, as in figure.js.
-const UNTURNED = [ONE, 0, 0, 0, ONE, 0, 0, 0, ONE];
+const UNTURNED = [UNIT, 0, 0, 0, UNIT, 0, 0, 0, UNIT];
 
-const size = (x) => (x < 0 ? -x : x);
 const farther = ([a, b]) => (size(a) > size(b) ? size(a) : size(b));
-const sum = (a, b) => a.map((x, axis) => (x + b[axis]) | 0);
+const plus = (a, b) => a.map((x, axis) => (x + b[axis]) | 0);
 const difference = (a, b) => a.map((x, axis) => (x - b[axis]) | 0);
-const squareOf = (vector) => vector.reduce((sum, x) => sum + x * x, 0);
+const squareOf = (vector) => vector.reduce((all, x) => all + x * x, 0);
 const farTo = (a, b) => floor(sqrt(squareOf(difference(a, b))));
 const anyBit = (vector) => vector.reduce((all, x) => all | abs(x), 0);
 const cycled = (vector, by) => vector.map((_, axis) => vector[(axis + by) % 3]);
-const dot = (a, b) => (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> 15;
+const scalarProduct = (a, b) => (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + HALF) >> 15;
 const crossed = (a, b) => a.map((_, axis) => (a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3] + HALF) >> 15);
 // A vector of length 1 at most, times a length below 2^16.
-const times = (vector, by) => vector.map((x) => (min(max(x, -ONE), ONE) * (min(max(by, -0xffff), 0xffff) >> 1)) >> 14);
+const times = (vector, by) => vector.map((x) => (min(max(x, -UNIT), UNIT) * (min(max(by, -0xffff), 0xffff) >> 1)) >> 14);
 const transposed = (turn) => turn.map((_, index) => turn[(index * 3) % 8 || index]);
 
 // Entries of the firmware's tables.
-const rootAt = (index) => round(Q22 / sqrt(index / 128));
-const circleAt = (index) => round(sin((index * PI) / 64) * Q22) >> 7;
+const rootEntry = (index) => round(Q22 / sqrt(index / 128));
+const circleEntry = (index) => round(sin((index * PI) / 64) * Q22) >> 7;
 // The direction of a vector in Q15, and its length; neither for a vector without length.
 const directionOf = (vector) => {
   const largest = anyBit(vector);
@@ -49,8 +49,8 @@ const directionOf = (vector) => {
   down -= squareOf(parts()) < 2 ** 30;
   const square = min(squareOf(parts()), 2 ** 32 - 1);
   const index = square >>> 23;
-  const root = rootAt(index);
-  const inverse = (root + (((rootAt(index + 1) - root) * ((square >>> 8) & 0x7fff)) >> 15)) >> 7;
+  const root = rootEntry(index);
+  const inverse = (root + (((rootEntry(index + 1) - root) * ((square >>> 8) & 0x7fff)) >> 15)) >> 7;
   return [parts().map((x) => (x * inverse + HALF) >> 15), floor((((((square >>> 15) + 1) >> 1) * inverse) >> 14) * 2 ** (down - up))];
 };
 // The angle of a unit vector.
@@ -59,21 +59,21 @@ const angleOf = (y, x) => {
   const along = abs(x);
   const small = min(across, along);
   const index = min(16, round((asin((2 * (small >> 8) + 1) / 256) * 64) / PI));
-  let angle = index * 2 ** 25 + ((small * circleAt(index + 32) - max(across, along) * circleAt(index) + HALF) >> 15) * 20861;
+  let angle = index * 2 ** 25 + ((small * circleEntry(index + 32) - max(across, along) * circleEntry(index) + HALF) >> 15) * 20861;
   if (across > along) angle = 2 ** 30 - angle;
   if (x < 0) angle = -(2 ** 31) - angle;
   return (y < 0 ? -angle : angle) | 0;
 };
 
 // A part of the time in which a foot comes back, in 2^-15.
-const partOf = (since, whole) => floor((since * ONE) / whole);
+const shareOf = (since, whole) => floor((since * UNIT) / whole);
 
 /**
  * The feet of the fields of a table whose checksum is right, for an animator of a bank with a number of clips. `maths` and `figureOf` are those of figure.js; the other tools are those of
  * character.js. Throws an Error for a table that contradicts itself or the rig. `next` has the frame of the new clip at which a transition that waits begins, and the time in ns until
  * then; `hold` corrects the pose of an update.
  */
-export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout, sinCosOf, imageOf], [Q, clamp, headingOf, must, nearest, normalize, partsOf, rotated, weighted, wide, wideShifted, writtenTo]) => {
+export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout, sinCosOf, imageOf]) => {
   const { pose, track } = animator;
   const { rig } = track.clip;
   const up = rig.up.findIndex(Boolean);
@@ -109,8 +109,8 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const joints = [{ name: "", parent: -1, kinds, first: 0, rest: ORIGIN }];
     const inner = figureOf({ rig: { joints, exponent: 0 }, joints, exponent: 0 }, []).inner();
     return (parts) => {
-      inner[PLACE](parts, ORIGIN);
-      return inner[TURNS];
+      inner[FIGURE_PLACE](parts, ORIGIN);
+      return inner[FIGURE_TURNS];
     };
   });
   const then = (turn, other) => [0, 3, 6].flatMap((column) => imageOf(turn, other.slice(column, column + 3)));
@@ -127,9 +127,9 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
   // Makes a rotation the decoder's quaternion, by its largest component.
   const takeTurn = (turn) => {
     const trace = turn[0] + turn[4] + turn[8];
-    const first = [ONE + trace, turn[5] - turn[7], turn[6] - turn[2], turn[1] - turn[3]];
+    const first = [UNIT + trace, turn[5] - turn[7], turn[6] - turn[2], turn[1] - turn[3]];
     // Four times the product of two components.
-    const product = (a, b) => (a && b ? turn[3 * a + b - 4] + turn[3 * b + a - 4] + (a === b && ONE - trace) : first[a + b]);
+    const product = (a, b) => (a && b ? turn[3 * a + b - 4] + turn[3 * b + a - 4] + (a === b && UNIT - trace) : first[a + b]);
     const best = first.reduce((best, _, own) => (product(own, own) > product(best, best) ? own : best), 0);
     Q.set(first.map((_, own) => product(own, best) * 4096));
     normalize(Q);
@@ -151,7 +151,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const [shape, axes, own] = turningOf(index, pose);
     const turned = shape < MAP ? [...turn] : then(turn, turnOf[shape - MAP](partsOf(shape, kinds, own)));
     if (shape < MAP) axes.slice(0, 3).forEach((axis, at) => turnAbout(turned, 0, axis, own[at]));
-    return [sum(place, imageOf(turn, offsetOf(index).map((x, axis) => (kinds.lastIndexOf(axis) < 0 ? x : shifted(pose[first + kinds.lastIndexOf(axis)], shift))))), turned];
+    return [plus(place, imageOf(turn, offsetOf(index).map((x, axis) => (kinds.lastIndexOf(axis) < 0 ? x : shifted(pose[first + kinds.lastIndexOf(axis)], shift))))), turned];
   };
   // Writes a joint's rotation to its channels. One with fewer than three angles takes those that it has.
   const write = (index, parent, turn) => {
@@ -180,7 +180,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     // Lengths of thigh and shin, and the distances of hip and ankle that the knee allows: it bends by 150 degrees at most, and by 1 degree at least.
     const [upper, lower] = leg.slice(2).map((index) => directionOf(offsetOf(index))[1]);
     must(upper && lower);
-    const [closest, farthest] = [1789569707, 11930465].map((bend) => floor(sqrt(max(0, upper ** 2 + lower ** 2 + floor((2 * upper * lower * sinCosOf(bend)[1]) / ONE)))));
+    const [closest, farthest] = [1789569707, 11930465].map((bend) => floor(sqrt(max(0, upper ** 2 + lower ** 2 + floor((2 * upper * lower * sinCosOf(bend)[1]) / UNIT)))));
     // The axis of the knee, and the sine of the greatest bend that it was seen at; the point that is held, and where it stays; the one that was on the ground before, and where it was; -1 for none.
     let hinge;
     let most = 0;
@@ -214,14 +214,14 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     const letGo = () => release(true, length() >> 2);
     const left = () => {
       const [a, b, height] = eases.map(([d, v, since], axis) => {
-        const part = partOf(since, wholeOf(axis));
-        const rest = ONE - part;
+        const part = shareOf(since, wholeOf(axis));
+        const rest = UNIT - part;
         const square = (rest * rest) >> 15;
-        return narrow(weighted(d, (square * (ONE + 2 * part)) >> 15) + weighted(v, (square * part) >> 15));
+        return narrow(weighted(d, (square * (UNIT + 2 * part)) >> 15) + weighted(v, (square * part) >> 15));
       });
       // The square of 4 t (1 - t), in 2^-13 of a lift, from rest to rest: nothing of a foot that is held, or where the clip has it.
-      const part = partOf(eases[0][2], whole);
-      const rise = (part * (ONE - part)) >> 15;
+      const part = shareOf(eases[0][2], whole);
+      const rise = (part * (UNIT - part)) >> 15;
       return [a, b, (height + floor((lift * ((rise * rise) >> 13)) / 8192)) | 0];
     };
     // What is left of its way has no velocity from now on; its lift is a part of the height that is left.
@@ -238,7 +238,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const [bend, sine] = directionOf(crossed(...bonesOf(hip, knee, ankle)));
       if (!(sine > max(most >> 1, LEAST_SINE))) return;
       const own = imageOf(transposed(turn), bend);
-      if (hinge && sine <= most && dot(own, hinge) < 0) return;
+      if (hinge && sine <= most && scalarProduct(own, hinge) < 0) return;
       hinge = own;
       most = max(most, sine);
     };
@@ -305,7 +305,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const [, [hip], , [ankle]] = own;
       const reached = farTo(ankle, hip);
       // Stretched by more than three quarters of the way to where the leg is straight, and by more than a 32nd of it.
-      if (point >= 0 && farTo(sum(ankle, way), hip) > reached + max(floor((max(0, farthest - reached) * 3) / 4), farthest >> 5)) {
+      if (point >= 0 && farTo(plus(ankle, way), hip) > reached + max(floor((max(0, farthest - reached) * 3) / 4), farthest >> 5)) {
         settle();
         letGo();
       }
@@ -342,7 +342,7 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       // A foot that was in the air has nothing to come back from.
       const least = point < 0 && !anyBit([eases[0][0], eases[1][0]]) ? 1 : RELEASE;
       release(true, far);
-      whole = clamp(time, least, LONGEST);
+      whole = clamp(time, least, LONGEST_STEP);
       eases = eases.map(([d, v, since], axis) => [d, axis < 2 ? narrow(trunc((v * whole) / RELEASE)) : v, since]);
     };
     const convert = (by) => {
@@ -362,15 +362,15 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
     // nearly straight legs bend to any side; a bend the other way does not stay. One that was never bent bends across the way to its target.
     const axisOf = (own, known, wanted, way) => {
       let [axis, sine = 0] = directionOf(own);
-      if (!known) return sine > LEAST_SINE ? [true, [axis]] : [false, directionOf(crossed(way, [ONE, 0, 0]))];
-      const back = axis ? ((min(sine, 2 * ONE) >> 1) * min(dot(axis, known), 0)) >> 14 : 0;
+      if (!known) return sine > LEAST_SINE ? [true, [axis]] : [false, directionOf(crossed(way, [UNIT, 0, 0]))];
+      const back = axis ? ((min(sine, 2 * UNIT) >> 1) * min(scalarProduct(axis, known), 0)) >> 14 : 0;
       if (back) {
         own = difference(own, times(known, back));
         [axis, sine = 0] = directionOf(own);
       }
       wanted = max(wanted, trunc(LEAST_SINE));
       if (axis && wanted <= sine) return [!back, [axis]];
-      [axis = known] = directionOf(sum(own, times(known, wanted - sine)));
+      [axis = known] = directionOf(plus(own, times(known, wanted - sine)));
       return [false, [axis]];
     };
     // Turns hip and knee so that the ankle comes to a target, or as near as the knee allows. The ankle keeps its rotation in the world.
@@ -380,9 +380,9 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
       const old = bonesOf(hip, knee, ankle);
       const reached = clamp(distance, closest, farthest);
       const [a, b, d] = [upper, lower, reached].map((length) => length >> 2);
-      const cosine = clamp(trunc(((a * a + d * d - b * b) * 2) / max(1, (a * d) >> 13)), -ONE, ONE);
-      const side = floor(sqrt(ONE * ONE - cosine * cosine));
-      const [isSquare, [axis = [0, 0, ONE]]] = axisOf(crossed(...old), hinge && imageOf(kneeTurn, hinge), b && trunc((side * d) / b), way);
+      const cosine = clamp(trunc(((a * a + d * d - b * b) * 2) / max(1, (a * d) >> 13)), -UNIT, UNIT);
+      const side = floor(sqrt(UNIT * UNIT - cosine * cosine));
+      const [isSquare, [axis = [0, 0, UNIT]]] = axisOf(crossed(...old), hinge && imageOf(kneeTurn, hinge), b && trunc((side * d) / b), way);
       const [across] = directionOf(crossed(way, axis));
       const squares = old.map((bone) => (isSquare ? axis : directionOf(crossed(crossed(bone, axis), bone))[0]));
       if (!across || !squares.every(Boolean)) return;
@@ -401,14 +401,14 @@ export const feetOf = ({ u8, take, more }, clips, animator, figureOf, [turnAbout
         return [places, ORIGIN, freeOf(places, ORIGIN)];
       };
       const [places, way, free] = wanted ?? own();
-      const target = sum(places[3][0], way);
+      const target = plus(places[3][0], way);
       const lowered = moved(places, -sunk);
       const [, [hip]] = lowered;
       const [aim, distance] = directionOf(difference(target, hip));
       const soft = max(farthest - (farthest >> 7) - free, farthest >> 8);
       const over = min(distance - free, 0xffff);
       // Past the free distance it comes less and less far.
-      solve(lowered, over > 0 ? sum(hip, times(aim, free + floor((over * soft) / (over + soft)))) : target);
+      solve(lowered, over > 0 ? plus(hip, times(aim, free + floor((over * soft) / (over + soft)))) : target);
     };
     return [convert, length, wayOf, enter, update, dropTo, reachDown];
   };

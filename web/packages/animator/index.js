@@ -5,7 +5,6 @@ import { keys } from "../decoder/keys.js";
 import { LIVE_LINK } from "../decoder/names.js";
 import { poseOf } from "../decoder/pose.js";
 import { figureOf, maths } from "../player/figure.js";
-import { feetOf } from "./feet.js";
 import { opened } from "./open.js";
 
 // Sections of a bank (decoder/FORMAT.md 16).
@@ -26,7 +25,7 @@ const write = (values, out, at) => {
 export const openCharacter = (data) => {
   const { rig, sections, files } = openRawBank(data, { names: LIVE_LINK, keys });
   if (!sections[MACHINE]) throw new Error("pantin: the bank has no state machine: `pantin machine` writes one into it");
-  const character = opened({ clips: files, feet: sections[FEET], machine: sections[MACHINE], rig, tools: [fieldsOf, checked, undefined, openRawClip, figureOf, maths] }, keys, feetOf);
+  const character = opened({ clips: files, feet: sections[FEET], machine: sections[MACHINE], rig, tools: [fieldsOf, checked, undefined, openRawClip, figureOf, maths] }, keys);
   const { animator } = character;
   const { track } = animator;
   const [states, parameters, inputs] = character.names;

@@ -1,4 +1,4 @@
-// The state machine of a bank, and what it plays: an animator, the second clip of a blend, and layers. The firmware's machine.rs and character.rs state each step. Feet are of a module of their own, feet.js.
+// The state machine of a bank, and what it plays: an animator, the second clip of a blend, and layers. The firmware's machine.rs and character.rs state each step.
 import { floor, max, min } from "../decoder/turning.js";
 import { animatorOf } from "./animator.js";
 import { WHOLE, big, clamp, isTurn, weighted } from "./channels.js";

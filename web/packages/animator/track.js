@@ -22,7 +22,7 @@ const NEXT = 1;
 const FIRST = 2;
 
 const quotient = (a, b) => a / b - big(a % b < 0n);
-const size = (x) => (x < 0 ? -x : x);
+export const size = (x) => (x < 0 ? -x : x);
 // 5 cm in the unit of a clip's positions.
 const nearOf = ({ rig, exponent }, most) => wideShifted(NEAR, -max(exponent, -most)) / big(round(rig.cmPerUnit * 1e6));
 

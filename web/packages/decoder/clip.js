@@ -199,7 +199,7 @@ export const openRawClip = (data, rig, isPartial, { names, named, poseOf, keys }
     rig, joints, scalars, events, eventNames, frames, frameTimeNs, exponent, looped, hasKeys, states, rigBytes, motionBytes,
     // Seconds. In a loop, the last frame lasts as long as the others.
     duration: ((frames - !looped) * frameTimeNs) / 1e9,
-    play: () => (hasKeys ? playKeys : play)(clip, poseOf, payload, at(), payload.length + 2 * ceil(motionBytes / 256) < motionBytes, keys),
+    play: () => (hasKeys ? keys.player : play)(clip, poseOf, payload, at(), payload.length + 2 * ceil(motionBytes / 256) < motionBytes, eachRest, frameAt),
   };
   named?.(clip);
   return clip;
@@ -411,37 +411,4 @@ const play = (clip, poseOf, payload, at, isPartial) => {
     seekTime: (seconds) => seek(frameAt(clip, seconds)),
   };
   return player;
-};
-
-// Plays a key clip: `keys` computes all of its frames. Before the whole motion is there, it rests at frame 0.
-const playKeys = (clip, poseOf, payload, at, isPartial, keys) => {
-  const { rig, frames } = clip;
-  const raw = new Int32Array(rig.channels);
-  let frame = 0;
-  let channel = 0;
-  eachRest(clip, (_, rest) => (raw[channel++] = rest));
-  const { channels, state, show } = isPartial ? { channels: [], show: () => {} } : keys.play(clip, payload, at, raw);
-  const step = () => {
-    if (isPartial || frame + 1 >= frames) return false;
-    show(++frame);
-    return true;
-  };
-  const seek = (to) => {
-    frame = isPartial ? 0 : max(0, min(floor(to) || 0, frames - 1));
-    show(frame);
-    return player;
-  };
-  const player = {
-    ...poseOf?.(clip, raw, state, channels),
-    clip, raw, step, seek,
-    moving: channels.length,
-    get frame() {
-      return frame;
-    },
-    get dry() {
-      return isPartial;
-    },
-    seekTime: (seconds) => seek(frameAt(clip, seconds)),
-  };
-  return seek(0);
 };

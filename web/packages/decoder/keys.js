@@ -337,33 +337,66 @@ const playInto = (out, speeds, keys, frames, looped) => {
   if (frame < frames) out[frame] = Number(low(raws.at(-1)));
 };
 
+// Each channel that moves, with its values and velocities at all frames. Keys that break a rule of the format leave the rig at rest.
+const framesOf = (clip, payload, at, raw) => {
+  const rests = raw.slice();
+  try {
+    return read(clip, payload, at, (channel, value) => (raw[channel] = value)).map((keys) => {
+      const [values, speeds] = [0, 0].map(() => new Int32Array(clip.frames));
+      playInto(values, speeds, keys, clip.frames, clip.looped);
+      return [keys.slot, values, speeds];
+    });
+  } catch (error) {
+    if (error !== BROKEN) throw error;
+    raw.set(rests);
+    return [];
+  }
+};
+
 /** Plays key clips: pass it to `openClip` or `openBank`. */
 export const keys = {
   // Checks flags and head [18].
   check: (flags, frames, states) => {
     if (flags & 0x94 || frames > 8191 || states > 14130) throw new Error("pantin: out of bounds");
   },
-  // The channels that move, their values and velocities, at the places of those of other clips, and a function that shows a frame. All frames are computed
-  // here: 8 bytes for each.
-  play: (clip, payload, at, raw) => {
-    const rests = raw.slice();
-    let own = [];
-    try {
-      own = read(clip, payload, at, (channel, value) => (raw[channel] = value)).map((keys) => {
-        const [values, speeds] = [0, 0].map(() => new Int32Array(clip.frames));
-        playInto(values, speeds, keys, clip.frames, clip.looped);
-        return [keys.slot, values, speeds];
-      });
-    } catch (error) {
-      if (error !== BROKEN) throw error;
-      raw.set(rests);
-    }
+  // Plays a key clip: what clip.js has for other clips, with the same words of state. Before the whole motion is there, it rests at frame 0. Else all frames are computed here: 8 bytes for each.
+  player: (clip, poseOf, payload, at, isPartial, eachRest, frameAt) => {
+    const { rig, frames } = clip;
+    const raw = new Int32Array(rig.channels);
+    let frame = 0;
+    let channel = 0;
+    eachRest(clip, (_, rest) => (raw[channel++] = rest));
+    const own = isPartial ? [] : framesOf(clip, payload, at, raw);
+    const channels = own.map(([channel]) => channel);
     const state = new Int32Array(own.length * STATE);
-    const show = (frame) =>
+    const show = (to) => {
+      frame = to;
       own.forEach(([channel, values, speeds], index) => {
         raw[channel] = state[index * STATE] = values[frame];
         state[index * STATE + 1] = speeds[frame];
       });
-    return { channels: own.map(([channel]) => channel), state, show };
+    };
+    const step = () => {
+      if (isPartial || frame + 1 >= frames) return false;
+      show(frame + 1);
+      return true;
+    };
+    const seek = (to) => {
+      show(isPartial ? 0 : max(0, min(floor(to) || 0, frames - 1)));
+      return player;
+    };
+    const player = {
+      ...poseOf?.(clip, raw, state, channels),
+      clip, raw, step, seek,
+      moving: channels.length,
+      get frame() {
+        return frame;
+      },
+      get dry() {
+        return isPartial;
+      },
+      seekTime: (seconds) => seek(frameAt(clip, seconds)),
+    };
+    return seek(0);
   },
 };

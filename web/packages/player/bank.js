@@ -50,10 +50,10 @@ export function bankOf(file, tools) {
     },
     // Lets a player steer the bank's state machine.
     async steer(player) {
-      const [{ steer }, { feetOf }, { keys }, { LIVE_LINK }] = await Promise.all([import("./pantin-character.js"), sections[FEET] ? import("./pantin-feet.js") : {}, file[2] > 1 ? import("./pantin-keys.js") : {}, rig.scalars[0] ? import("./pantin-face.js") : {}]);
+      const [{ steer }, { keys }, { LIVE_LINK }] = await Promise.all([import("./pantin-character.js"), file[2] > 1 ? import("./pantin-keys.js") : {}, rig.scalars[0] ? import("./pantin-face.js") : {}]);
       // Layers name scalars, also such as the rig names by their numbers in the list.
       rig.scalars = openRawRig(sections[RIG], LIVE_LINK).scalars;
-      return steer(this, player, keys, feetOf);
+      return steer(this, player, keys);
     },
   };
 }

@@ -30,11 +30,11 @@ function standOf([place, heading], axis, shift, turns, [turnAbout, , imageOf]) {
 }
 
 // Lets a player steer the state machine of a bank: it gets its names and its events.
-export function steer(bank, player, keys, feetOf) {
+export function steer(bank, player, keys) {
   const { rig, tools: [, , , , figureOf, maths] } = bank;
   let character;
   try {
-    character = opened(bank, keys, feetOf);
+    character = opened(bank, keys);
   } catch {
     throw new Error(FAULT);
   }

@@ -11,6 +11,7 @@ mod flash;
 mod licences;
 pub mod lvgl;
 mod micropython;
+mod programs;
 mod python;
 mod readme;
 mod solid;
@@ -254,6 +255,7 @@ impl Bindings {
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
         steps.run("a face on ESPHome's displays", || esphome::run(&folder));
         steps.run("MicroPython", || micropython::run(&folder));
+        steps.run("programs that the page offers", || programs::run(&folder));
         steps.run("JavaScript", || turns::javascript(&folder));
         steps.run("wheel of the Python package", || python::run(&folder));
         steps.run("licences", || licences::run(&folder));

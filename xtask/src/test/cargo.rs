@@ -1,4 +1,4 @@
-//! Calls of cargo in the three workspaces.
+//! Calls of cargo in the workspaces.
 
 use std::process::Command;
 
@@ -15,6 +15,8 @@ pub enum Workspace {
     Firmware,
     /// The page's modules.
     Web,
+    /// What makes a site of the documentation.
+    Book,
 }
 
 impl Workspace {
@@ -25,7 +27,11 @@ impl Workspace {
             Workspace::Host => paths::root(),
             Workspace::Firmware => paths::firmware(),
             Workspace::Web => paths::root().join("web"),
+            Workspace::Book => paths::root().join("xtask/book"),
         });
+        if let Workspace::Book = self {
+            command.env("CARGO_TARGET_DIR", paths::root().join("target/book"));
+        }
         command
     }
 

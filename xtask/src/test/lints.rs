@@ -1,4 +1,4 @@
-//! Formatting and lints of the three workspaces.
+//! Formatting and lints of the workspaces.
 
 use anyhow::Result;
 use xtask::packages::Package;
@@ -25,6 +25,7 @@ pub fn format(steps: &Steps) {
     steps.run("format", || Workspace::Host.shown(check));
     steps.run("format of the firmware", || Workspace::Firmware.shown(check));
     steps.run("format of the web modules", || Workspace::Web.shown(check));
+    steps.run("format of the documentation's command", || Workspace::Book.shown(check));
 }
 
 /// Lints of the host's crates.
@@ -71,6 +72,15 @@ pub fn web(steps: &Steps, modules: &[Package]) {
     for Package { name, .. } in modules {
         steps.run(&format!("lints of {name}"), || web_module(name));
     }
+}
+
+/// Lints and tests of what makes a site of the documentation, and the site, whose links lead somewhere.
+pub fn book(steps: &Steps) {
+    steps.run("lints of the documentation's command", || {
+        Workspace::Book.captured(&format!("clippy --all-targets -- {}", as_errors()))
+    });
+    steps.run("tests of the documentation's command", || Workspace::Book.captured("test"));
+    steps.run("documentation as a site", || Workspace::Book.captured("run -- -o ../../target/book/site"));
 }
 
 fn web_module(name: &str) -> Result<()> {

@@ -128,6 +128,7 @@ impl Plan {
                 Ok(modules) => lints::web(steps, &modules),
                 Err(error) => steps.run("lints of the web modules", || Err(error)),
             }
+            lints::book(steps);
         }
     }
 

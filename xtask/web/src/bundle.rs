@@ -11,7 +11,7 @@ use crate::{inline, script, tools};
 /// A module that the build writes: the face's model as a text.
 const FACE_MODEL: &str = "player/face-model.js";
 /// The modules of each script of the player, below `web/packages`. The last one keeps its exports.
-pub const SCRIPTS: [(&str, &[&str]); 15] = [
+pub const SCRIPTS: [(&str, &[&str]); 14] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
     ("pantin-stream.js", &["player/stream.js"]),
@@ -35,11 +35,11 @@ pub const SCRIPTS: [(&str, &[&str]); 15] = [
             "animator/gait.js",
             "animator/machine-table.js",
             "animator/machine.js",
+            "animator/feet.js",
             "animator/open.js",
             "player/character.js",
         ],
     ),
-    ("pantin-feet.js", &["animator/feet.js"]),
 ];
 /// The modules of the decoder's minified build.
 pub const DECODER: [&str; 5] =

@@ -25,7 +25,10 @@ pub fn filled(site: &Path, page: &str) -> Result<String> {
     let mut others = vec![("a GIF", gif(&walk)?)];
     let mut scripts = vec![];
     if setup::emulator("node").is_ok() {
-        others.insert(0, ("Lottie", lottie(&walk)?));
+        let folder = tempfile::tempdir().context("a folder for a Lottie file")?;
+        let file = folder.path().join("walk.json");
+        lottie(&walk, &file)?;
+        others.insert(0, ("Lottie", sent(&file)?));
         others.push(("BVH", sent(&site.join("clips/walk.bvh"))?));
         scripts.push(("the player of this page", sent(&site.join(PLAYER[0]))?));
         let folder = tempfile::tempdir().context("a folder for the decoder")?;
@@ -70,15 +73,12 @@ fn gif(clip: &Path) -> Result<usize> {
     Ok(std::fs::read(&out).context("pantin render wrote nothing")?.len())
 }
 
-/// Bytes of the clip's picture as a Lottie file, as sent.
-fn lottie(clip: &Path) -> Result<usize> {
-    let folder = tempfile::tempdir().context("a folder for a Lottie file")?;
-    let out = folder.path().join("walk.json");
+/// Writes the clip's picture as a Lottie file.
+pub fn lottie(clip: &Path, out: &Path) -> Result<()> {
     let mut node = Command::new(setup::emulator("node")?);
-    let output =
-        node.arg(paths::root().join("web/tools/lottie.mjs")).arg(clip).arg(&out).output().context("cannot start node")?;
+    let output = node.arg(paths::root().join("web/tools/lottie.mjs")).arg(clip).arg(out).output().context("cannot start node")?;
     ensure!(output.status.success(), "lottie.mjs: {}", String::from_utf8_lossy(&output.stderr).trim());
-    sent(&out)
+    Ok(())
 }
 
 /// Bytes of a file compressed with brotli.

@@ -3,7 +3,7 @@
 pub mod arduino;
 pub mod browsers;
 pub mod bundle;
-mod compare;
+pub mod compare;
 mod downloads;
 mod inline;
 pub mod npm;

@@ -115,6 +115,33 @@ pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
     })
 }
 
+/// Builds each of the examples with the packed player, and uses what was built in Chromium. Returns their names.
+pub fn examples(packed: &[Packed], folder: &Path) -> Result<Vec<String>> {
+    let source = paths::root().join("web/examples");
+    npm::install(&source, folder)?;
+    copied(&source, folder)?;
+    let player = packed.iter().find(|package| package.name == "@pantin/player").context("the player was not packed")?;
+    npm::run(folder, &["install", "--no-save", "--no-audit", "--no-fund", &player.file.display().to_string()])?;
+    let built = node(folder, "check.mjs", &[paths::root().join("motions/walk.ptn")])?;
+    serde_json::from_str(&built).context("check.mjs")
+}
+
+/// Copies a folder, without what tools leave there.
+fn copied(from: &Path, to: &Path) -> Result<()> {
+    const LEFT: [&str; 7] = ["node_modules", "dist", "build", "out", ".next", ".svelte-kit", ".astro"];
+    std::fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
+    for entry in std::fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let (name, path) = entry.map(|entry| (entry.file_name(), entry.path()))?;
+        if LEFT.iter().any(|left| name == *left) {
+        } else if path.is_dir() {
+            copied(&path, &to.join(&name))?;
+        } else {
+            std::fs::copy(&path, to.join(&name)).with_context(|| path.display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
 /// What three.js shows: a line for each of the captured files, or none where these are not at hand.
 pub fn pixels(folder: &Path) -> Result<Vec<String>> {
     let Some(data) = paths::data() else { return Ok(vec![]) };

@@ -68,12 +68,15 @@ pub const OTHERS: [&str; 9] = [
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.js"];
-/// What it loads too for a bank, for one with a state machine, and for one with a table of feet.
-pub const CHARACTER: [&str; 3] = ["pantin-bank.js", "pantin-character.js", "pantin-feet.js"];
+/// What it loads too for a bank, and for one with a state machine.
+pub const CHARACTER: [&str; 2] = ["pantin-bank.js", "pantin-character.js"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 3] = ["converter.js", "pantin-converter.wasm", "wasm.js"];
 /// What is loaded beside it once the text of the character's state machine is opened.
 pub const MACHINE: [&str; 4] = ["machine.js", "machine-worker.js", "pantin-machine.wasm", "wasm.js"];
+
+/// Texts of programs: they stay as they are.
+const PROGRAMS: &str = "programs.js";
 
 /// Builds the site into a folder, in place of what of it was there, and a page in one file for each of the `inlined` clips.
 pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
@@ -106,7 +109,7 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         if name == "index.html" {
             bytes = compare::filled(out, &String::from_utf8(bytes).context("index.html")?)?.into_bytes();
         }
-        let is_script = entry.extension().is_some_and(|extension| extension == "js");
+        let is_script = entry.extension().is_some_and(|extension| extension == "js") && name != PROGRAMS;
         write(&out.join(name), &if is_script { scripted(&bytes)? } else { bytes })?;
     }
     for clip in inlined {

@@ -6,6 +6,7 @@ use crate::output::note;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
 use serde_json::json;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,10 +51,6 @@ impl Site {
         let mut site = Site::default();
         let root = folder.canonicalize().with_context(|| format!("{}: cannot be read", folder.display()))?;
         site.add_folder(&root, folder, "/")?;
-        let clips = folder.join(CLIPS);
-        if clips.is_dir() {
-            site.add_folder(&root, &clips, &format!("/{CLIPS}/"))?;
-        }
         ensure!(
             site.files.contains_key("/index.html"),
             "{}: no page in it; `cargo xtask web` builds one into target/web",
@@ -128,15 +125,14 @@ impl Site {
         self.add("/clips.json".into(), json!(list).to_string().into_bytes())
     }
 
-    /// The file of a request's path.
+    /// The file of a request's path: of a folder, its page.
     pub fn file(&self, path: &str) -> Option<&File> {
-        self.files.get(if path == "/" { "/index.html" } else { path })
+        self.files.get(&*named(path))
     }
 
-    /// The content of a request's path in a coding, if the site has it.
+    /// The file of a request's path in a coding.
     pub fn coded(&self, path: &str, coding: &Coding) -> Option<&File> {
-        let path = if path == "/" { "/index.html" } else { path };
-        self.files.get(&format!("{path}{}", coding.extension))
+        self.files.get(&format!("{}{}", named(path), coding.extension))
     }
 
     /// Adds a file.
@@ -150,7 +146,7 @@ impl Site {
         Ok(())
     }
 
-    /// Adds the files in `folder`, except links that lead out of the site's folder `root`.
+    /// Adds the files in `folder` and in the folders below it, except links that lead out of the site's folder `root`. Links to folders are not followed.
     fn add_folder(&mut self, root: &Path, folder: &Path, prefix: &str) -> Result<()> {
         let entries = fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))?;
         let mut found = vec![];
@@ -161,7 +157,10 @@ impl Site {
         // A file comes before what was made of it.
         found.sort();
         for path in found {
-            if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| path.is_file()) {
+            let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+            if path.is_dir() && !path.is_symlink() {
+                self.add_folder(root, &path, &format!("{prefix}{name}/"))?;
+            } else if path.is_file() {
                 if !path.canonicalize().is_ok_and(|file| file.starts_with(root)) {
                     note!("warning: {}: not served, because it is a link to a file outside of the site's folder", path.display());
                     continue;
@@ -172,6 +171,11 @@ impl Site {
         }
         Ok(())
     }
+}
+
+/// The path of the file that a path names.
+fn named(path: &str) -> Cow<'_, str> {
+    if path.ends_with('/') { format!("{path}index.html").into() } else { path.into() }
 }
 
 /// A hash of 64 bits (FNV-1a) and the length.
@@ -187,6 +191,10 @@ fn kind(path: &str) -> &'static str {
         Some("js") => "text/javascript; charset=utf-8",
         Some("json") => "application/json",
         Some("wasm") => "application/wasm",
+        Some("svg") => "image/svg+xml",
+        Some("png") => "image/png",
+        Some("gif") => "image/gif",
+        Some("woff2") => "font/woff2",
         _ => "application/octet-stream",
     }
 }

@@ -225,6 +225,9 @@ fn links_out_of_the_site_are_not_served() {
     symlink("index.html", path("inside.html")).unwrap();
     symlink(outside.path().join("secret"), path("leak")).unwrap();
     symlink(outside.path().join("clips"), path("clips")).unwrap();
+    fs::create_dir_all(path("docs/decoder")).unwrap();
+    ["docs/index.html", "docs/decoder/FORMAT.html"].iter().for_each(|name| fs::write(path(name), name).unwrap());
+    symlink(folder.path(), path("docs/around")).unwrap();
     // The site's folder itself may be a link.
     let link = outside.path().join("site");
     symlink(folder.path(), &link).unwrap();
@@ -232,6 +235,10 @@ fn links_out_of_the_site_are_not_served() {
         let site = Site::read(site).unwrap();
         assert_eq!(site.file("/inside.html").unwrap().bytes, PAGE);
         assert!(site.file("/leak").is_none() && site.file("/clips/secret").is_none());
+        // Folders of the site are served, with their pages, and links to folders are not followed.
+        assert_eq!(site.file("/docs/").unwrap().bytes, b"docs/index.html");
+        assert_eq!(site.file("/docs/decoder/FORMAT.html").unwrap().bytes, b"docs/decoder/FORMAT.html");
+        assert!(site.file("/docs/decoder/").is_none() && site.file("/docs/around/index.html").is_none());
     }
 }
 

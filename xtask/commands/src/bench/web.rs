@@ -1,6 +1,8 @@
 //! The web page: bytes that it loads, and times in Chromium on this machine.
 
-use anyhow::{Context, Result};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
 use harness::paths;
 use harness::web::browser::Browser;
 use harness::web::{self, CHARACTER, CONVERTER, EXPORT, FACE, MACHINE, OTHERS, PLAYER, tools};
@@ -8,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::{Goal, table};
 use xtask::steps::say;
+use xtask::{npm, setup};
 
 /// Bytes of a page's player: for clips of bodies, and with faces; as sent with brotli, and raw.
 const MOST: [[f64; 2]; 2] = [[14.0 * 1024.0, 36.0 * 1024.0], [22.0 * 1024.0, 72.0 * 1024.0]];
@@ -47,7 +50,37 @@ pub fn run() -> Result<Vec<Goal>> {
     let browser = Browser::ready()?;
     goals.extend(times(&browser, &site)?);
     goals.extend(conversion(&browser, &site)?);
+    goals.extend(side_by_side(&browser)?);
     Ok(goals)
+}
+
+/// Other players of our walk, on the lines of [`LINES`]: what npm installs is not in the repository.
+fn side_by_side(browser: &Browser) -> Result<Vec<Goal>> {
+    let folder = paths::root().join("target/compare");
+    let source = paths::root().join("web/compare");
+    npm::install(&source, &folder)?;
+    for name in ["compare.mjs", "three.js"] {
+        std::fs::copy(source.join(name), folder.join(name)).with_context(|| name.to_owned())?;
+    }
+    let site = paths::root().join("target/web");
+    let walk = folder.join("walk.json");
+    web::compare::lottie(&site.join("clips/walk.ptn"), &walk)?;
+    let lines: Vec<Value> = LINES[..2].iter().map(|(name, _, latency, kilobits, _)| json!([name, latency, kilobits])).collect();
+    let mut node = Command::new(setup::emulator("node")?);
+    node.arg("compare.mjs").arg(&site).arg(&walk).arg(json!(lines).to_string()).current_dir(&folder).envs(browser.environment());
+    let output = node.output().context("cannot start node")?;
+    ensure!(output.status.success(), "compare.mjs: {}", String::from_utf8_lossy(&output.stderr).trim());
+    let measured: serde_json::Map<String, Value> = serde_json::from_slice(&output.stdout).context("compare.mjs")?;
+    let goal = |(name, one): (&String, &Value)| {
+        let bytes = one["bytes"].as_u64().with_context(|| name.clone())?;
+        let first = LINES.iter().filter_map(|(line, ..)| {
+            let ms = one["first"][line].as_f64()?;
+            Some(format!(", {:.2} s on {line}", ms / 1000.0))
+        });
+        let busy = one["busy"].as_f64().map(|part| format!(", {:.1} % of a core", 100.0 * part)).unwrap_or_default();
+        Ok(Goal::told(format!("side by side, our walk: {name}"), format!("{bytes} bytes{}{busy}", first.collect::<String>())))
+    };
+    measured.iter().map(goal).collect()
 }
 
 fn sizes() -> Result<Vec<Goal>> {

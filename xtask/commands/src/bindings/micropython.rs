@@ -69,3 +69,15 @@ pub fn run(folder: &TempDir) -> Result<()> {
     ensure!(printed.starts_with(b"160 frames"), "the README's program prints {}", printed.escape_ascii());
     Ok(())
 }
+
+/// What a program prints in a folder with its clip; none without MicroPython.
+pub fn program(folder: &TempDir, place: &Path, text: &str) -> Result<Option<String>> {
+    let Some(interpreter) = interpreter(folder) else { return Ok(None) };
+    for name in ["pantin.py", "pantin_tables.py"] {
+        std::fs::copy(home().join(name), place.join(name)).with_context(|| name.to_owned())?;
+    }
+    std::fs::write(place.join("play.py"), text)?;
+    let mut command = Command::new(interpreter);
+    command.current_dir(place).env("MICROPYPATH", ".").arg("play.py");
+    Ok(Some(String::from_utf8_lossy(&output(command)?.stdout).into_owned()))
+}

@@ -1,0 +1,5 @@
+import { Walk } from "./Walk";
+
+export default function Page() {
+  return <main><Walk /></main>;
+}
