@@ -1,6 +1,6 @@
 //! The web page in a real Chromium: its pictures are the host's, pixel by pixel, and everything on it is driven as a user would.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
@@ -15,7 +15,9 @@ use harness::web::{self, browsers, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
 use pantin_convert::expand::expand;
+use pantin_convert::export::gltf;
 use pantin_convert::import::{self, ImportOptions};
+use pantin_convert::motion::Motion;
 use pantin_convert::verify;
 use pantin_face::talk::{Talk, VISEMES};
 use pantin_figure::rotation::Rotation;
@@ -496,6 +498,10 @@ impl Dropped {
         assert!(report.shell_cm.error <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
         let header = String::from_utf8(self.file(&format!("{stem}.h"))).unwrap();
         assert!(header.contains(&format!("_LEN {}\n", bytes.len())), "{header:.300}");
+        let moving = Motion { looped: clip.looped(), ..expand(&clip).unwrap() };
+        assert!(self.file(&format!("{stem}.glb")) == gltf::write(&moving).unwrap(), "the .glb is not the clip's");
+        let programs = self.outcome["programs"].as_object().unwrap();
+        assert!(programs.len() == 7 && programs.values().all(|text| text.as_str().unwrap().contains(&format!("{stem}."))));
         let sides = self.outcome["sides"].as_array().unwrap();
         assert!(sides.iter().all(|side| side["frame"] == clip.frames() / 2 && side["frames"] == clip.frames()), "{sides:?}");
         assert!(sides.iter().all(|side| side["colours"].as_u64().unwrap() > 3), "{sides:?}");
@@ -537,8 +543,9 @@ fn a_dropped_motion_is_converted_shown_and_saved() {
     let shot = json!({ "effort": "default", "shot": shots().join("converted.png") });
     let walk = dropped(&[&bvh], shot);
     walk.is_good(&bvh, None);
-    let parts: Vec<f64> = serde_json::from_value(walk.outcome["parts"].clone()).unwrap();
-    assert!(parts.len() > 3 && parts.is_sorted(), "progress {parts:?}");
+    let parts: BTreeMap<String, Vec<f64>> = serde_json::from_value(walk.outcome["parts"].clone()).unwrap();
+    assert!(parts.keys().eq(["fitting", "making it smaller"]), "{parts:?}");
+    assert!(parts.values().all(|parts| parts.is_sorted()) && parts["making it smaller"].len() > 3, "progress {parts:?}");
     let glb = folder.path().join("our-walk.glb");
     dropped(&[&glb], json!({ "effort": "fast" })).is_good(&glb, None);
     let leg = paths::root().join("host-tools/pantin/tests/data/leg.fbx");

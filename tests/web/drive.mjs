@@ -51,6 +51,18 @@ const load = (page, file) => page.evaluate((file) => player.load(file).then(() =
 const state = (page) => page.evaluate(() => ({ ...player.facts, paused: player.paused, received: player.received, orbit: player.orbit }));
 const said = (page) => page.locator("#player p[role=status]").textContent();
 
+// The programs that the page offers for what was converted, by their languages.
+async function programsOf(page) {
+  await page.locator("#programs summary").click();
+  await page.waitForFunction(() => document.querySelector("#program").textContent);
+  const programs = {};
+  for (const language of await page.locator("#language option").allTextContents()) {
+    await page.locator("#language").selectOption(language);
+    programs[language] = await page.locator("#program").textContent();
+  }
+  return programs;
+}
+
 const cases = {
   // Frames in the order asked for, from the sides asked for, as they stand on the canvas.
   async pixels(page) {
@@ -113,7 +125,7 @@ const cases = {
     const offers = async () => Object.fromEntries(await page.locator("#inputs button").evaluateAll((all) => all.map((one) => [one.textContent, one.getAttribute("aria-disabled") !== "true"])));
     await page.waitForFunction(() => document.querySelector("#inputs [data-fire=bow]").getAttribute("aria-disabled") === "true");
     assert.deepEqual(await offers(), { Walk: true, Run: true, "Turn left": false, "Turn right": false, Jump: true, Wave: true, Bow: false, "Sit, stand": true, Dance: false });
-    assert.match(await page.locator("#why").textContent(), /no way from “walk” to turn left, turn right, bow, dance/);
+    assert.match(await page.locator("#why").textContent(), /Not from “walk”: turn left, turn right, bow, dance\. Press “Walk” again: it stops/);
     await page.getByRole("button", { name: "Bow", exact: true }).dispatchEvent("click");
     await page.getByRole("button", { name: "Walk", exact: true }).click();
     await is("idle");
@@ -1440,8 +1452,13 @@ const cases = {
     if (args.fps) await page.locator("#fps").fill(String(args.fps));
     await page.locator("#effort").selectOption(args.effort);
     await page.evaluate((files) => {
-      window.parts = [];
-      new MutationObserver(() => window.parts.push(+document.querySelector("#progress").value)).observe(document.querySelector("#step"), { childList: true });
+      // The parts that are done, of the first conversion and of the one that replaces it.
+      window.parts = {};
+      const step = document.querySelector("#step");
+      new MutationObserver(() => {
+        const [doing] = step.textContent.split(",");
+        if (/%/.test(step.textContent)) (window.parts[doing] ??= []).push(+document.querySelector("#progress").value);
+      }).observe(step, { childList: true });
       const data = new DataTransfer();
       for (const { name, bytes } of files) data.items.add(new File([Uint8Array.from(atob(bytes), (letter) => letter.charCodeAt(0))], name));
       const over = new DragEvent("dragover", { dataTransfer: data, bubbles: true, cancelable: true });
@@ -1454,10 +1471,11 @@ const cases = {
     await page.waitForFunction(() => document.querySelector("#working").hidden && converted.frame > 2);
     await page.evaluate(() => (converted.pause(), converted.seek(converted.frames >> 1)));
     const saved = {};
-    for (const id of ["save", "save-c"]) {
+    for (const id of ["save", "save-glb", "save-c"]) {
       const [download] = await Promise.all([page.waitForEvent("download"), page.locator(`#${id}`).click()]);
       saved[download.suggestedFilename()] = readFileSync(await download.path()).toString("base64");
     }
+    const programs = await programsOf(page);
     if (args.shot) await page.locator(".convert").screenshot({ path: args.shot });
     const sides = await page.evaluate(() => [original, converted].map((one) => ({ frame: one.frame, frames: one.frames, ...window.seen(one) })));
     const greys = await page.evaluate(async () => {
@@ -1466,7 +1484,7 @@ const cases = {
     });
     const report = await page.locator("#report").innerText();
     const seconds = +/converted in\s*([\d.]+)/.exec(report)[1];
-    return { saved, sides, greys, seconds, report, parts: await page.evaluate(() => window.parts) };
+    return { saved, sides, greys, seconds, report, programs, parts: await page.evaluate(() => window.parts) };
   },
 
   // Files that cannot be converted, chosen by the button: what is said, and how soon.
@@ -1527,6 +1545,13 @@ const cases = {
     const shown = await page.evaluate(() => converted.duration);
     await converts(() => page.locator("#animation").selectOption("1"));
     await page.waitForFunction((shown) => converted.duration > 1.5 * shown, shown);
+    // What was converted, in a link.
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.locator("#share-clip").click();
+    await page.waitForFunction(() => document.querySelector("#share-clip").textContent === "Copied");
+    const turning = await page.context().newPage();
+    await turning.goto(await page.evaluate(() => navigator.clipboard.readText()));
+    await turning.waitForFunction((duration) => player.duration === duration, await page.evaluate(() => converted.duration));
     // Messages have the page's words.
     for (const path of args.alone) {
       const alone = await files(path);
@@ -1534,7 +1559,6 @@ const cases = {
       assert.equal(alone.hidden, true);
     }
     // A clip in a link.
-    await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
     await page.locator("#files").setInputFiles(args.clip);
     await page.waitForFunction(() => player.frames === 26 && player.playable === 26);
     await page.locator("#share").click();

@@ -85,12 +85,12 @@ function offered() {
   const can = (input) => !known || pressed(input) || namesOf(input).some((name) => known.includes(name)) || (input === fast && known.includes(go.dataset.hold));
   inputs().forEach((input) => input.setAttribute("aria-disabled", !can(input)));
   const missing = inputs().filter((input) => !can(input)).map((input) => input.textContent.toLowerCase());
-  const said = missing.length ? `Greyed: the state machine has no way from “${character.state.replaceAll("_", " ")}” to ${missing.length > 4 ? "these" : missing.join(", ")}.` : "";
+  const said = missing.length ? `Not from “${character.state.replaceAll("_", " ")}”: ${missing.length > 4 ? "what is greyed" : missing.join(", ")}.` : "";
   // What is held is let go by another press; most figures stand then, as at first.
   const held = inputs().filter(pressed).map((input) => `“${input.textContent}”`);
   const first = possible[character.states[0]];
   const waits = inputs().some((input) => !can(input) && namesOf(input).some((name) => first?.includes(name)));
-  const whole = waits && held.length ? `${said} Press ${held.join(" and ")} again, so that it stands.` : said;
+  const whole = waits && held.length ? `${said} Press ${held.join(" and ")} again: it stops, and can do the rest.` : said;
   if ($("why").textContent !== whole) $("why").textContent = whole;
 }
 
