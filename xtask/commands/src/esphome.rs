@@ -57,7 +57,9 @@ pub fn write(folder: &Path) -> Result<usize> {
     for name in &files {
         fs::copy(from.join(name), folder.join(COMPONENT).join(name)).with_context(|| name.clone())?;
     }
-    Ok(count + files.len())
+    // The clip of an example.
+    fs::copy(paths::root().join("motions/face/hello.ptn"), folder.join("examples/hello.ptn"))?;
+    Ok(count + files.len() + 1)
 }
 
 #[cfg(test)]
