@@ -83,6 +83,11 @@ impl Component {
         let list = std::fs::read_to_string(self.place.join("CMakeLists.txt"))?;
         let sources: BTreeSet<&str> = list.split('"').skip(1).step_by(2).filter(|word| word.ends_with(".c")).collect();
         let object = folder.path().join("component.o");
+        let readme = std::fs::read_to_string(self.place.join("README.md"))?;
+        let program =
+            readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has a program")?;
+        let of_page = folder.path().join("readme.c");
+        std::fs::write(&of_page, program)?;
         for (name, options) in COMPILERS {
             let compile = |sources: &Path, more: &[&str]| {
                 let mut gcc = self.compiler(name);
@@ -96,10 +101,11 @@ impl Component {
                 compile(&self.example(example), &[])?;
             }
             compile(&self.example("body_cyd"), &["-DCONFIG_CYD_ST7789"])?;
+            compile(&of_page, &[])?;
             for format in ["-DCONFIG_PANTIN_FORMAT_L8", "-DCONFIG_PANTIN_FORMAT_RGB565"] {
                 compile(&self.place.join("panel/pantin_panel.c"), &[format])?;
             }
-            println!("   {name}: {} sources and the examples", sources.len());
+            println!("   {name}: {} sources, the examples and the README's program", sources.len());
         }
         let widget = sources.iter().filter(|source| source.starts_with("lvgl"));
         for source in widget {
