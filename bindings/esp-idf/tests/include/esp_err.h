@@ -1,4 +1,4 @@
-/* What the component and its examples use of ESP-IDF 5.1 to 5.5, for tests on this machine. Its own headers have more. */
+/* What the component and its examples use of ESP-IDF 5.3 to 5.5, for tests on this machine. Its own headers have more. */
 #pragma once
 #include <stdint.h>
 typedef int esp_err_t;
