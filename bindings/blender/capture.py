@@ -36,8 +36,9 @@ def frame_range(scene, armature):
     raise Refused(f"armature `{armature.name}` has no action")
 
 
-def capture(context, armature, deforming_only=True, frames=None):
-    """The motion of an armature over its action, or over a range of frames, and notes about it. The scene is at its frame again afterwards."""
+def captured(context, armature, deforming_only=True, frames=None):
+    """Yields the part that is done, from 0 to 1; then returns the motion of an armature over its action, or over a range of frames, and notes about
+    it. The scene is at its frame again afterwards, also if this ends early."""
     scene = context.scene
     first, last = frames or frame_range(scene, armature)
     names, parents = bones(armature, deforming_only)
@@ -58,6 +59,7 @@ def capture(context, armature, deforming_only=True, frames=None):
             rotations.append([tuple(turn) for turn in turns])
             translations.append([tuple(move) for move in moves])
             values.append([read(depsgraph) for _, read, _ in sources])
+            yield (frame - first + 1) / (last - first + 1)
     finally:
         scene.frame_set(now, subframe=now_part)
     joints = [pantin.Joint(name, parent) for name, parent in zip(names, parents)]

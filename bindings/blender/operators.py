@@ -9,12 +9,16 @@ import pantin
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .apply import apply
-from .capture import Refused, capture, frame_range
+from .capture import Refused, captured, frame_range
+from .job import Cancelled, Modal, in_thread
+from .live import PERIOD, Sender
 
 # The picture that the panel shows.
 IMAGE = "Pantin preview"
 # Pixels of the picture for each of the display's.
 MAGNIFIED = 4
+# The part of a conversion that reading the scene takes in the bar.
+READING = 0.3
 
 
 class Settings(bpy.types.PropertyGroup):
@@ -36,6 +40,9 @@ class Settings(bpy.types.PropertyGroup):
         name="Deforming Bones Only", description="Leave out bones that deform nothing, such as those that control a rig", default=True
     )
     result: bpy.props.StringProperty(options={"SKIP_SAVE"})
+    host: bpy.props.StringProperty(name="Host", description="Where `pantin stream --live vmc:PORT` runs", default="127.0.0.1")
+    port: bpy.props.IntProperty(name="Port", description="The port of `pantin stream --live vmc:PORT`", default=39539, min=1, max=65535)
+    live: bpy.props.BoolProperty(options={"SKIP_SAVE", "HIDDEN"})
 
 
 def armature_of(context):
@@ -61,24 +68,43 @@ def events(scene, first, last):
     return [(marker.frame - first, marker.name) for marker in markers if first <= marker.frame <= last and marker.name]
 
 
-def convert(context, report, frames=None):
-    """A clip of the active action, or of a range of its frames. `report` shows what is odd about it, as that of an operator does."""
+def conversion(context, report, frames=None, threaded=False):
+    """Yields the part that is done, from 0 to 1; then returns a clip of the active action, or of a range of its frames. `report` shows what is odd about it,
+    as that of an operator does. `threaded` converts in a thread, while the caller goes on."""
     settings = context.scene.pantin
     armature = armature_of(context)
-    motion, left_out = capture(context, armature, settings.deforming_only, frames)
+    options = {"max_scalar_error": settings.scalar_bound, "effort": settings.effort}
+    options["events"] = events(context.scene, *(frames or frame_range(context.scene, armature)))
+    bound = settings.bound
+    reading = captured(context, armature, settings.deforming_only, frames)
+    try:
+        while True:
+            yield READING * next(reading)
+    except StopIteration as end:
+        motion, left_out = end.value
+    finally:
+        # If this ends early, the scene goes back to its frame.
+        reading.close()
     for text in left_out:
         report({"WARNING"}, text)
-    manager = context.window_manager
-    manager.progress_begin(0, 1)
-    try:
-        options = {"max_scalar_error": settings.scalar_bound, "effort": settings.effort}
-        options["events"] = events(context.scene, *(frames or frame_range(context.scene, armature)))
+
+    def made(progress=None):
         with warnings.catch_warnings():
             # They are shown below, each time.
             warnings.simplefilter("ignore", pantin.ConversionWarning)
-            clip = pantin.convert(motion, settings.bound, progress=manager.progress_update, **options)
-    finally:
-        manager.progress_end()
+            return pantin.convert(motion, bound, progress=progress, **options)
+
+    if threaded:
+        working = in_thread(made)
+        try:
+            while True:
+                yield READING + (1 - READING) * next(working)
+        except StopIteration as end:
+            clip = end.value
+        finally:
+            working.close()
+    else:
+        clip = made()
     measured = clip.report
     parts = [f"{clip.nbytes} bytes, {clip.frames} frames"]
     if clip.joints:
@@ -89,6 +115,16 @@ def convert(context, report, frames=None):
         settings.result = "; ".join(parts)
     show_notes(clip, report)
     return clip
+
+
+def convert(context, report, frames=None):
+    """The clip of `conversion`, at once."""
+    work = conversion(context, report, frames)
+    try:
+        while True:
+            next(work)
+    except StopIteration as end:
+        return end.value
 
 
 def show_notes(clip, report):
@@ -113,10 +149,12 @@ def show(clip, frame):
 class Guarded:
     """An operator whose refusals are reports, not tracebacks."""
 
+    REFUSALS = (Refused, Cancelled, pantin.PantinError, OSError)
+
     def execute(self, context):
         try:
             message = self.run(context)
-        except (Refused, pantin.PantinError, OSError) as error:
+        except self.REFUSALS as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.report({"INFO"}, message)
@@ -137,8 +175,8 @@ class OfAction:
         return True
 
 
-class PANTIN_OT_export(Guarded, OfAction, bpy.types.Operator, ExportHelper):
-    """Write the active action as a clip within the bound"""
+class PANTIN_OT_export(Guarded, OfAction, Modal, bpy.types.Operator, ExportHelper):
+    """Write the active action as a clip within the bound. Esc cancels"""
 
     bl_idname = "pantin.export"
     bl_label = "Export Clip"
@@ -154,9 +192,21 @@ class PANTIN_OT_export(Guarded, OfAction, bpy.types.Operator, ExportHelper):
     def draw(self, context):
         settings_drawn(self.layout, context)
 
-    def run(self, context):
-        convert(context, self.report).save(self.filepath)
+    def execute(self, context):
+        # Scripts, and Blender without a window, wait for the clip.
+        if bpy.app.background or not self.options.is_invoke:
+            return Guarded.execute(self, context)
+        return self.start(context)
+
+    def work(self, context):
+        return conversion(context, self.report, threaded=True)
+
+    def finished(self, context, clip):
+        clip.save(self.filepath)
         return context.scene.pantin.result
+
+    def run(self, context):
+        return self.finished(context, convert(context, self.report))
 
 
 class PANTIN_OT_preview(Guarded, OfAction, bpy.types.Operator):
@@ -191,6 +241,55 @@ class PANTIN_OT_import(Guarded, bpy.types.Operator, ImportHelper):
         return f"{clip.frames} frames for `{armature.name}`"
 
 
+class PANTIN_OT_live(Guarded, bpy.types.Operator):
+    """Send the pose to `pantin stream --live` while you scrub, play or pose. The same button, or Esc, ends it"""
+
+    bl_idname = "pantin.live"
+    bl_label = "Send Live"
+
+    @classmethod
+    def poll(cls, context):
+        try:
+            armature_of(context)
+        except Refused as error:
+            cls.poll_message_set(str(error))
+            return False
+        return True
+
+    def execute(self, context):
+        settings = context.scene.pantin
+        if settings.live:
+            # The operator that sends sees it at its next tick.
+            settings.live = False
+            return {"FINISHED"}
+        try:
+            self.sender = Sender(armature_of(context), settings.host, settings.port)
+        except self.REFUSALS as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if bpy.app.background:
+            self.sender.send(context)
+            self.sender.close()
+            return {"FINISHED"}
+        settings.live = True
+        self.timer = context.window_manager.event_timer_add(PERIOD, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """Sends at each tick of the timer; all events go on to Blender, so that one can work meanwhile."""
+        settings = context.scene.pantin
+        if event.type == "TIMER" and settings.live and self.sender.send(context):
+            return {"PASS_THROUGH"}
+        if event.type not in {"TIMER", "ESC"}:
+            return {"PASS_THROUGH"}
+        settings.live = False
+        context.window_manager.event_timer_remove(self.timer)
+        self.sender.close()
+        self.report({"INFO"}, f"{self.sender.sent} poses were sent")
+        return {"FINISHED"}
+
+
 def export_entry(menu, _context):
     """The entry in File > Export."""
     menu.layout.operator(PANTIN_OT_export.bl_idname, text="Pantin Clip (.ptn)")
@@ -201,4 +300,4 @@ def import_entry(menu, _context):
     menu.layout.operator(PANTIN_OT_import.bl_idname, text="Pantin Clip (.ptn)")
 
 
-CLASSES = (Settings, PANTIN_OT_export, PANTIN_OT_preview, PANTIN_OT_import)
+CLASSES = (Settings, PANTIN_OT_export, PANTIN_OT_preview, PANTIN_OT_import, PANTIN_OT_live)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .operators import IMAGE, PANTIN_OT_export, PANTIN_OT_import, PANTIN_OT_preview, settings_drawn
+from .operators import IMAGE, PANTIN_OT_export, PANTIN_OT_import, PANTIN_OT_live, PANTIN_OT_preview, settings_drawn
 
 
 class PANTIN_PT_clip(bpy.types.Panel):
@@ -24,6 +24,10 @@ class PANTIN_PT_clip(bpy.types.Panel):
             layout.label(text=part)
         layout.operator(PANTIN_OT_export.bl_idname)
         layout.operator(PANTIN_OT_import.bl_idname)
+        layout.separator()
+        layout.prop(settings, "host")
+        layout.prop(settings, "port")
+        layout.operator(PANTIN_OT_live.bl_idname, text="Stop" if settings.live else "Send Live", depress=settings.live)
 
 
 CLASSES = (PANTIN_PT_clip,)

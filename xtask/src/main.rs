@@ -26,14 +26,14 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 32] = [
+const LIST: [(&str, Place, &str); 34] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
         Place::Here(test::run),
         "Runs what belongs before a commit; --boards, --bindings, --web, --packages, --captures run other groups, --all everything",
     ),
-    ("arduino", COMMANDS, "Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder"),
+    ("arduino", COMMANDS, "Writes the Arduino library (also for PlatformIO) to a folder"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("bindings", COMMANDS, "Tests the decoder in C with compilers and emulators; `test --bindings` is the same"),
     ("book", Place::Alone("xtask/book"), "Builds the documentation as a site with search; `web` does it, too"),
@@ -44,6 +44,7 @@ const LIST: [(&str, Place, &str); 32] = [
         COMMANDS,
         "Prints the line coverage of decoder, link and store by their own tests and the sender's; needs cargo-llvm-cov",
     ),
+    ("esp-idf", COMMANDS, "Writes the component for ESP-IDF to a folder"),
     ("esphome", COMMANDS, "Writes the ESPHome component of a talking face to a folder"),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
     ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
@@ -52,6 +53,7 @@ const LIST: [(&str, Place, &str); 32] = [
     ("gba", COMMANDS, "Makes a cartridge image for the Game Boy Advance, with all our motions"),
     ("images", COMMANDS, "Makes a folder of images to flash, with a page that shows each one's wires"),
     ("independent", COMMANDS, "Evaluates clips of captured and random motions with no code of the tool; needs Node.js"),
+    ("micropython", COMMANDS, "Writes the MicroPython module in C, and the decoder in Python, to a folder"),
     ("miri", COMMANDS, "Runs the decoder's tests in Miri; needs a nightly Rust"),
     ("mutants-differential", COMMANDS, "Plays damaged clips in two decoders and compares them; needs Node.js"),
     ("mutation", COMMANDS, "Mutates the decoder and lists what its tests do not notice; needs cargo-mutants"),

@@ -50,7 +50,7 @@ impl Steps {
 }
 
 /// Processor time that child processes have taken, user and system, in seconds; `None` where the system does not say.
-fn processor_seconds() -> Option<f64> {
+pub fn processor_seconds() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // Fields 16 and 17, in ticks of 10 ms; the name in field 2 may hold blanks.
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(13);

@@ -2,7 +2,9 @@
  * (xtask/commands/src/bindings/solid.rs):
  *
  *     solid CLIP.ptn LOOK [RIG.rig] : of a character's bytes, or - for the default one
- *     solid CLIP.ptn mutants LOOK COUNT : of damaged characters */
+ *     solid CLIP.ptn mutants LOOK COUNT : of damaged characters
+ *
+ * Compiled with SOLID_ALONE, it prints only the figure of the clip, for the module of MicroPython, which has no places and no second figure. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,10 +162,15 @@ static void frames(pantin_player *player) {
         for (frame = 0; frame < player->clip->frames; frame += STEP) {
             need(pantin_seek(player, frame) == PANTIN_OK, "seek");
             print(pose);
+#ifndef SOLID_ALONE
             if (frame % (4 * STEP) == 0) print_at(pose, frame / STEP);
             if (frame % (6 * STEP) == 0) print_both(pose, frame / STEP);
+#endif
         }
     }
+#ifdef SOLID_ALONE
+    return;
+#endif
     /* Poses that no clip contains. */
     for (n = 0; n < CHAOS && solid.figure.width; n++) {
         for (c = 0; c < player->clip->rig.channels; c++) {

@@ -3,12 +3,13 @@ import sys
 from array import array
 
 import pantin
+from checksums import crc as crc_of
 
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
 
 def crc(values):
-    return pantin._crc(array("i", values), 0, 4 * len(values), 0xFFFF)
+    return crc_of(array("i", values))
 
 
 def sums(joint):

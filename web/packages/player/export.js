@@ -92,6 +92,8 @@ export async function record(player, paper, options = {}) {
 // How an encoder is to compress, or null where there is none: outside secure contexts, and of other types than WebM.
 async function encoding({ width, height }, fps, type) {
   const config = { codec: "vp8", width, height, bitrate: BITRATE, framerate: fps };
+  // WebKitGTK's encoder ends the page's process with an error unless another call has set up its media first.
+  globalThis.MediaRecorder?.isTypeSupported(type);
   const isKnown = type === "video/webm" && (await globalThis.VideoEncoder?.isConfigSupported(config).catch(() => null))?.supported;
   return isKnown ? config : null;
 }

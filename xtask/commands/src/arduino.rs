@@ -7,7 +7,7 @@ use clap::Args;
 use harness::paths;
 pub use harness::web::arduino::{home, write};
 
-/// Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder
+/// Writes the Arduino library (also for PlatformIO) to a folder
 #[derive(Args)]
 pub struct Arduino {
     /// The library's folder, for example ~/Arduino/libraries/Pantin [default: target/arduino/Pantin of the repository]
@@ -29,7 +29,7 @@ impl Arduino {
             "             File > Examples > Pantin has the examples; Sketch > Include Library > Pantin includes the library."
         );
         println!("arduino-cli: arduino-cli compile --fqbn arduino:avr:uno --library {place} {place}/examples/Servos");
-        println!("PlatformIO:  put the folder into `lib` of a project. ESP-IDF: into `components`.");
+        println!("PlatformIO:  put the folder into `lib` of a project.");
         println!("Your motion: cargo pantin expand CLIP.ptn -o clip.h writes the header that a sketch includes.");
         Ok(())
     }

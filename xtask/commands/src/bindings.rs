@@ -4,6 +4,7 @@
 mod animator;
 mod arduino;
 mod blender;
+mod esp_idf;
 mod esphome;
 mod face;
 mod figure;
@@ -148,6 +149,9 @@ struct Target {
     figures: Option<u64>,
 }
 
+/// Minutes of processor time that the drop-in parts may take, with one Blender.
+const MINUTES: f64 = 30.0;
+
 /// Tests the decoder in C: test vectors, damaged files, mutants, code size, emulated boards
 #[derive(Args)]
 pub struct Bindings {
@@ -160,6 +164,9 @@ pub struct Bindings {
     /// A Python that has Blender's module bpy, numpy and pytest, for the Blender add-on; may be given several times
     #[arg(long, value_name = "PYTHON")]
     bpy: Vec<String>,
+    /// Runs only the drop-in parts: LVGL, xiaozhi, ESP-IDF, ESPHome, MicroPython, Blender; at most 30 minutes of processor time
+    #[arg(long)]
+    dropins: bool,
     /// Runs only the steps whose name contains this text
     #[arg(long)]
     only: Option<String>,
@@ -195,15 +202,27 @@ impl Bindings {
             }
             setup::sanitizers()
         });
-        for compiler in ["gcc", "clang"] {
-            steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
-            steps.run(&format!("test vectors of key clips with {compiler} and sanitizers"), || key_vectors(&folder, compiler));
+        if !self.dropins {
+            self.decoders(&steps, &folder);
         }
-        steps.run("the README's program in C", || readme::run(&folder));
-        steps.run("rotations against the crate's", || turns::vectors(&folder));
-        steps.run("rotations of captures against the crate's", || turns::captures(&folder));
+        self.parts(&steps, &folder);
+        if self.dropins {
+            steps.steps.run("time of the drop-in parts", processor_time_is_within_the_limit);
+        }
+        steps.steps.finish()
+    }
+
+    /// The decoder in C and in JavaScript, the Arduino library and the Python package.
+    fn decoders(&self, steps: &Selected<'_>, folder: &TempDir) {
+        for compiler in ["gcc", "clang"] {
+            steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(folder, compiler));
+            steps.run(&format!("test vectors of key clips with {compiler} and sanitizers"), || key_vectors(folder, compiler));
+        }
+        steps.run("the README's program in C", || readme::run(folder));
+        steps.run("rotations against the crate's", || turns::vectors(folder));
+        steps.run("rotations of captures against the crate's", || turns::captures(folder));
         steps.run("a damaged clip hides no other", || {
-            let mut command = Command::new(host_program(&folder, "gcc", "errors")?);
+            let mut command = Command::new(host_program(folder, "gcc", "errors")?);
             command.args(["bank.ptb", "scalars.ptn"].map(|name| vectors::folder().join(name)));
             output(command).map(drop)
         });
@@ -216,51 +235,56 @@ impl Bindings {
             }
             Ok(())
         });
-        steps.run("conversions", || conversions(&folder));
-        steps.run("lines of figures against the crate's", || figure::lines(&folder));
-        steps.run("solid figures against the crate's", || solid::pictures(&folder));
-        steps.run("failed reads of figures", || solid::reads(&folder));
-        steps.run("faces against the crate's", || face::pictures(&folder));
-        steps.run("what faces promise", || face::rules(&folder));
-        steps.run("memory of faces", || face::memory(&folder));
-        steps.run("lips for speech against the crate's", || talk::weights(&folder));
-        steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
-        steps.run("the tutorial of a talking face", || tutorial::talking_face(&folder));
-        steps.run("animators against the crate's", || animator::transitions(&folder));
-        steps.run("state machines against the crate's", || animator::machines(&folder));
-        steps.run("feet of characters against the crate's", || animator::feet(&folder));
-        steps.run("faces and bodies on the test display of LVGL", || lvgl::run(&folder));
-        steps.run("a face that speaks on the test display of LVGL", lvgl::speech);
-        steps.run("a display for xiaozhi on the test display of LVGL", || xiaozhi::run(&folder));
-        steps.run("cuts and flipped bits", || damage(&folder));
-        steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
-        steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(&folder));
-        steps.run(&format!("{} mutants of banks", self.mutants), || self.bank_mutants(&folder));
+        steps.run("conversions", || conversions(folder));
+        steps.run("lines of figures against the crate's", || figure::lines(folder));
+        steps.run("solid figures against the crate's", || solid::pictures(folder));
+        steps.run("failed reads of figures", || solid::reads(folder));
+        steps.run("faces against the crate's", || face::pictures(folder));
+        steps.run("what faces promise", || face::rules(folder));
+        steps.run("memory of faces", || face::memory(folder));
+        steps.run("lips for speech against the crate's", || talk::weights(folder));
+        steps.run("lips for speech of espeak-ng", || talk::speech(folder));
+        steps.run("the tutorial of a talking face", || tutorial::talking_face(folder));
+        steps.run("animators against the crate's", || animator::transitions(folder));
+        steps.run("state machines against the crate's", || animator::machines(folder));
+        steps.run("feet of characters against the crate's", || animator::feet(folder));
+        steps.run("cuts and flipped bits", || damage(folder));
+        steps.run(&format!("{} mutants", self.mutants), || self.mutants(folder));
+        steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(folder));
+        steps.run(&format!("{} mutants of banks", self.mutants), || self.bank_mutants(folder));
         for target in &TARGETS {
-            steps.run(&format!("size with {}", target.compiler), || target.size(&folder));
+            steps.run(&format!("size with {}", target.compiler), || target.size(folder));
         }
         for board in &BOARDS {
-            steps.run(&format!("test vectors on {}", board.name), || board.test_vectors(&folder));
-            steps.run(&format!("rotations on {}", board.name), || turns::on_board(&folder, board));
+            steps.run(&format!("test vectors on {}", board.name), || board.test_vectors(folder));
+            steps.run(&format!("rotations on {}", board.name), || turns::on_board(folder, board));
         }
-        steps.run("a clip on an Arduino Uno in simavr", || uno::walk(&folder));
-        steps.run("rotations on an Arduino Uno in simavr, and what they cost", || uno::turns(&folder));
-        steps.run("compiler of the ESP8266", || flash::sizes(&folder));
-        steps.run("tables in program memory", || flash::moved(&folder));
-        steps.run("classes of the Arduino library", || arduino::classes(&folder));
-        steps.run("examples of the Arduino library", || arduino::examples(&folder));
-        steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
-        steps.run("names that a clip lacks, on an Uno in simavr", || arduino::missing(&folder));
-        steps.run("four servos on an Arduino Uno in simavr", || arduino::servos(&folder));
-        steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
-        steps.run("a face on ESPHome's displays", || esphome::run(&folder));
-        steps.run("MicroPython", || micropython::run(&folder));
-        steps.run("programs that the page offers", || programs::run(&folder));
-        steps.run("JavaScript", || turns::javascript(&folder));
-        steps.run("wheel of the Python package", || python::run(&folder));
-        steps.run("licences", || licences::run(&folder));
-        steps.run("Blender add-on", || blender::run(&folder, &self.bpy));
-        steps.steps.finish()
+        steps.run("a clip on an Arduino Uno in simavr", || uno::walk(folder));
+        steps.run("rotations on an Arduino Uno in simavr, and what they cost", || uno::turns(folder));
+        steps.run("compiler of the ESP8266", || flash::sizes(folder));
+        steps.run("tables in program memory", || flash::moved(folder));
+        steps.run("classes of the Arduino library", || arduino::classes(folder));
+        steps.run("examples of the Arduino library", || arduino::examples(folder));
+        steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(folder));
+        steps.run("names that a clip lacks, on an Uno in simavr", || arduino::missing(folder));
+        steps.run("four servos on an Arduino Uno in simavr", || arduino::servos(folder));
+        steps.run("metadata of the Arduino library", || arduino::metadata(folder));
+        steps.run("programs that the page offers", || programs::run(folder));
+        steps.run("JavaScript", || turns::javascript(folder));
+        steps.run("wheel of the Python package", || python::run(folder));
+    }
+
+    /// Parts that are dropped into other people's systems, each from its packed folder.
+    fn parts(&self, steps: &Selected<'_>, folder: &TempDir) {
+        steps.run("faces and bodies on the test display of LVGL", || lvgl::run(folder));
+        steps.run("a face that speaks on the test display of LVGL", lvgl::speech);
+        steps.run("a display for xiaozhi on the test display of LVGL", || xiaozhi::run(folder));
+        steps.run("the component for ESP-IDF", || esp_idf::run(folder));
+        steps.run("a face on ESPHome's displays", || esphome::run(folder));
+        steps.run("MicroPython", || micropython::run(folder));
+        steps.run("the module in C for MicroPython", || micropython::module(folder));
+        steps.run("licences", || licences::run(folder));
+        steps.run("Blender add-on", || blender::run(folder, &self.bpy));
     }
 
     fn mutants(&self, folder: &TempDir) -> Result<()> {
@@ -286,6 +310,14 @@ impl Bindings {
         })?;
         no_difference(&counts)
     }
+}
+
+/// An error if the programs that were started took more processor time than the drop-in parts may; where the system counts none, nothing is checked.
+fn processor_time_is_within_the_limit() -> Result<()> {
+    let Some(seconds) = xtask::steps::processor_seconds() else { return Ok(()) };
+    println!("   {:.1} of {MINUTES} minutes of processor time", seconds / 60.0);
+    ensure!(seconds <= 60.0 * MINUTES, "the drop-in parts may take {MINUTES} minutes");
+    Ok(())
 }
 
 /// Prints how many mutants agreed; an error that shows the first one that does not.

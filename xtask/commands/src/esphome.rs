@@ -1,6 +1,5 @@
 //! `cargo xtask esphome [FOLDER]`: the ESPHome component as a folder to copy: the files of `bindings/esphome`, and the C sources of faces.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +7,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use harness::paths;
 use harness::web::arduino::{copy, make_room};
+
+use crate::packed::with_includes;
 
 /// Sources in C, and headers with data, that the component compiles.
 const SOURCES: [&str; 5] = ["pantin.c", "pantin_face.c", "pantin_talk.c", "pantin_face_data.h", "pantin_face_themes.h"];
@@ -52,25 +53,13 @@ pub fn write(folder: &Path) -> Result<usize> {
     make_room(folder, folder.join(COMPONENT).join("face.h").is_file(), COMPONENT)?;
     let count = copy(&home(), folder)?;
     let from = paths::root().join("bindings/c/src");
-    let files = with_includes(&from)?;
+    let files = with_includes(&from, &SOURCES)?;
     for name in &files {
         fs::copy(from.join(name), folder.join(COMPONENT).join(name)).with_context(|| name.clone())?;
     }
-    Ok(count + files.len())
-}
-
-/// The names of the sources and of the headers beside them that they include.
-fn with_includes(folder: &Path) -> Result<BTreeSet<String>> {
-    let mut names = BTreeSet::new();
-    let mut open: Vec<String> = SOURCES.map(str::to_owned).to_vec();
-    while let Some(name) = open.pop() {
-        let text = fs::read_to_string(folder.join(&name)).with_context(|| name.clone())?;
-        let quoted = |line: &str| Some(line.strip_prefix("#include \"")?.split_once('"')?.0.to_owned());
-        if names.insert(name) {
-            open.extend(text.lines().filter_map(quoted));
-        }
-    }
-    Ok(names)
+    // The clip of an example.
+    fs::copy(paths::root().join("motions/face/hello.ptn"), folder.join("examples/hello.ptn"))?;
+    Ok(count + files.len() + 1)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod blender;
 mod campaign;
 mod conformance;
 mod downloads;
+mod esp_idf;
 mod esphome;
 mod firmware;
 mod fuzz;
@@ -15,6 +16,8 @@ mod gba;
 mod images;
 mod independent;
 mod log;
+mod micropython;
+mod packed;
 mod sizes;
 mod strips;
 mod train;
@@ -36,6 +39,7 @@ enum Command {
     Bindings(bindings::Bindings),
     Blender(blender::Blender),
     Coverage(campaign::Coverage),
+    EspIdf(esp_idf::EspIdf),
     Esphome(esphome::Esphome),
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
@@ -45,6 +49,7 @@ enum Command {
     Independent(independent::Independent),
     #[command(hide = true)]
     Log(log::Log),
+    Micropython(micropython::Micropython),
     Miri(campaign::Miri),
     MutantsDifferential(campaign::MutantsDifferential),
     Mutation(campaign::Mutation),
@@ -65,6 +70,7 @@ fn main() -> ExitCode {
         Command::Bindings(bindings) => bindings.run(),
         Command::Blender(blender) => blender.run(),
         Command::Coverage(coverage) => coverage.run(),
+        Command::EspIdf(component) => component.run(),
         Command::Esphome(esphome) => esphome.run(),
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
@@ -73,6 +79,7 @@ fn main() -> ExitCode {
         Command::Images(images) => images.run(),
         Command::Independent(independent) => independent.run(),
         Command::Log(log) => log.run(),
+        Command::Micropython(micropython) => micropython.run(),
         Command::Miri(miri) => miri.run(),
         Command::MutantsDifferential(differential) => differential.run(),
         Command::Mutation(mutation) => mutation.run(),

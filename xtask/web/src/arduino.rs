@@ -95,17 +95,18 @@ pub fn copy(from: &Path, to: &Path) -> Result<usize> {
     Ok(count)
 }
 
-/// A page of `bindings/NAME` whose links to other folders than `bindings` say where in the repository that is.
+/// A page of `bindings/NAME` whose links to other folders say where in the repository that is.
 fn without_links_out(page: &str) -> String {
-    let mut parts = page.split("](../../");
+    let mut parts = page.split("](../");
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (target, rest) = part.split_once(')').unwrap_or((part, ""));
         let file = target.split('#').next().unwrap_or_default();
+        let place = file.strip_prefix("../").map_or_else(|| format!("bindings/{file}"), str::to_owned);
         if let Some(at) = text.rfind('[') {
             text.remove(at);
         }
-        text += &format!(" (`{file}` in Pantin's repository){rest}");
+        text += &format!(" (`{place}` in Pantin's repository){rest}");
     }
     text
 }
@@ -159,6 +160,13 @@ mod tests {
         fs::write(folder.join("src/old.c"), "").unwrap();
         assert_eq!(write(&folder).unwrap(), count);
         assert!(!folder.join("src/old.c").exists());
+    }
+
+    #[test]
+    fn links_to_other_folders_become_text() {
+        let page = "See [a page](../c/README.md#faces), [one](../../docs/FACE.md) and [this](examples/a.c).";
+        let expected = "See a page (`bindings/c/README.md` in Pantin's repository), one (`docs/FACE.md` in Pantin's repository) and [this](examples/a.c).";
+        assert_eq!(without_links_out(page), expected);
     }
 
     #[test]

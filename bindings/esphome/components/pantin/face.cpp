@@ -30,11 +30,13 @@ static const uint32_t FNV_PRIME = 16777619;
 
 void Face::setup() {
   this->buffer_.reset(new (std::nothrow) uint16_t[static_cast<size_t>(this->width_) * std::min(ROWS, this->height_)]);
-  if (this->buffer_ == nullptr) {
-    this->mark_failed(LOG_STR("There is not enough memory for 16 rows of the face"));
+  const size_t words = PANTIN_FACE_WORDS(97, this->channels_());
+  this->memory_.reset(new (std::nothrow) uint32_t[words]);
+  if (this->buffer_ == nullptr || this->memory_ == nullptr) {
+    this->mark_failed(LOG_STR("There is not enough memory for the face"));
     return;
   }
-  if (pantin_face_open(&this->face_, this->model_, this->length_, this->memory_, sizeof this->memory_) != PANTIN_OK ||
+  if (pantin_face_open(&this->face_, this->model_, this->length_, this->memory_.get(), words * sizeof(uint32_t)) != PANTIN_OK ||
       pantin_face_size(&this->face_, this->width_, this->height_) != PANTIN_OK) {
     this->mark_failed(LOG_STR("The model of the face is damaged"));
     return;
@@ -90,6 +92,35 @@ bool Face::emote(const std::string &name) {
     ESP_LOGW(TAG, "There is no emote '%s'", name.c_str());
   }
   return result == PANTIN_OK;
+}
+
+/// Channels of the clip that has most of them; emotes have fewer than 12.
+uint16_t Face::channels_() const {
+  uint16_t most = 12;
+  for (const pantin_emote &own : this->clips_) {
+    pantin_source source;
+    pantin_clip clip;
+    pantin_memory(&source, own.bytes, own.length);
+    if (pantin_open(&clip, &source, nullptr) == PANTIN_OK)
+      most = std::max(most, clip.rig.channels);
+  }
+  return most;
+}
+
+bool Face::play(const std::string &name) {
+  for (const pantin_emote &own : this->clips_) {
+    if (name != own.name)
+      continue;
+    const pantin_result result = pantin_face_play(&this->face_, own.bytes, own.length);
+    if (result == PANTIN_NOT_FOUND) {
+      ESP_LOGW(TAG, "No scalar of the clip '%s' drives the face", own.name);
+    } else if (result != PANTIN_OK) {
+      ESP_LOGW(TAG, "The clip '%s' does not play: result %d of pantin.h", own.name, result);
+    }
+    return result == PANTIN_OK;
+  }
+  ESP_LOGW(TAG, "There is no clip '%s'", name.c_str());
+  return false;
 }
 
 void Face::level(float level) {

@@ -30,6 +30,9 @@ class Face : public Component {
   void set_initial_emote(const char *name) { this->initial_emote_ = name; }
   void set_transition(uint16_t ms) { this->transition_ms_ = ms; }
 
+  /// Gives the face a clip, before setup(). Name and bytes are not copied.
+  void add_clip(const char *name, const uint8_t *bytes, uint32_t length) { this->clips_.push_back({name, bytes, length}); }
+
   /// Lets the face draw itself on a display without a lambda: the rows that changed, every 33 ms, with the left upper corner at x, y.
   void set_display(display::Display *display, int x, int y, bool big_endian) {
     this->display_ = display;
@@ -58,6 +61,13 @@ class Face : public Component {
   /// Goes over to an emote. Returns false for an unknown name: the face stays as it is, and the log has a warning.
   bool emote(const std::string &name);
 
+  /// Plays a clip of the configuration, or of add_clip(), in place of an emote. Returns false for an unknown name and for a clip that does not play: the
+  /// face stays as it is, and the log has a warning.
+  bool play(const std::string &name);
+
+  /// Whether the clip that plays has no loop and has shown its last frame.
+  bool is_finished() const { return this->face_.finished != 0; }
+
   /// Opens the mouth, 0 to 1, until the next call. No effect while push_pcm() or viseme() move the lips.
   void level(float level);
 
@@ -78,6 +88,7 @@ class Face : public Component {
   pantin_talk *get_talk() { return &this->talk_; }
 
  protected:
+  uint16_t channels_() const;
   void draw_changes_();
   void send_(uint16_t first, int height);
 #ifdef USE_LVGL
@@ -87,8 +98,9 @@ class Face : public Component {
   bool rows_(pantin_format format, size_t stride, uint16_t first);
   uint16_t end_(uint16_t first) const;
 
-  /// Memory for the cartoon, which has more vertices than the other models, and for emotes.
-  uint32_t memory_[PANTIN_FACE_WORDS(97, 12)];
+  /// Memory for the cartoon, which has more vertices than the other models, for emotes and for the longest clip.
+  std::unique_ptr<uint32_t[]> memory_;
+  std::vector<pantin_emote> clips_;
   pantin_face face_{};
   pantin_talk talk_{};
   const uint8_t *model_;
@@ -115,6 +127,12 @@ template<typename... Ts> class EmoteAction : public Action<Ts...>, public Parent
  public:
   TEMPLATABLE_VALUE(std::string, emote)
   void play(const Ts &...x) override { this->parent_->emote(this->emote_.value(x...)); }
+};
+
+template<typename... Ts> class PlayAction : public Action<Ts...>, public Parented<Face> {
+ public:
+  TEMPLATABLE_VALUE(std::string, clip)
+  void play(const Ts &...x) override { this->parent_->play(this->clip_.value(x...)); }
 };
 
 template<typename... Ts> class LevelAction : public Action<Ts...>, public Parented<Face> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use harness::paths;
+use harness::{build, paths};
 use tempfile::TempDir;
 
 use super::output;
@@ -52,7 +52,11 @@ fn one(folder: &TempDir, python: &str, libraries: &Path, number: usize) -> Resul
     wheels::run(pip)?;
     let mut pytest = Command::new(python);
     pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).arg(&tests).current_dir(&place);
-    pytest.env("PYTHONPATH", &place).env("LD_LIBRARY_PATH", libraries).env("PANTIN_ROOT", paths::root());
+    pytest
+        .env("PYTHONPATH", &place)
+        .env("LD_LIBRARY_PATH", libraries)
+        .env("PANTIN_ROOT", paths::root())
+        .env("PANTIN_TOOL", build::host_tool()?);
     let printed = output(pytest).with_context(|| python.to_owned())?.stdout;
     println!("   {}", String::from_utf8_lossy(&printed).trim_end().lines().last().unwrap_or_default());
     Ok(())

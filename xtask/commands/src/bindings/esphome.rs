@@ -6,6 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 use harness::paths;
+use harness::vectors::keyed;
 use tempfile::TempDir;
 
 use super::{SANITIZERS, lvgl, output};
@@ -38,7 +39,7 @@ pantin:
 ";
 
 /// What is wrong with a configuration, the text that is replaced and by what, and a part of the error.
-const WRONG: [(&str, &str, &str, &str); 10] = [
+const WRONG: [(&str, &str, &str, &str); 14] = [
     ("an unknown emote", "emote: happy", "emote: hapy", "Unknown value 'hapy', did you mean 'happy'"),
     ("an unknown initial emote", "id: face", "emote: glad", "Unknown value 'glad', valid options are 'angry'"),
     (
@@ -49,6 +50,15 @@ const WRONG: [(&str, &str, &str, &str); 10] = [
     ),
     ("a size of 0", "  width: 64\n  height: 64\n", "  width: 0\n  height: 64\n", "value must be at least 1"),
     ("a size above 2047", "  width: 64\n  height: 64\n", "  width: 64\n  height: 2048\n", "value must be at most 2047"),
+    ("a clip that is not there", "id: face", "id: face\n  clips:\n    hello: none.ptn", "Could not find file"),
+    ("a clip that is none", "id: face", "id: face\n  clips:\n    hello: wrong.yaml", "wrong.yaml is not a clip"),
+    ("a key clip", "id: face", "id: face\n  clips:\n    hello: keys.ptn", "convert its motion with --segments"),
+    (
+        "a clip that the face has not",
+        "pantin.emote: happy",
+        "pantin.play: hello",
+        "the face has no clip 'hello'; under clips it has none",
+    ),
     ("no height", "id: face\n  width: 64\n  height: 64\n", "id: face\n  width: 64\n", "'height' is a required option"),
     ("an id of the C library", "id: face", "id: pantin_face", "choose an id that does not start with pantin_"),
     (
@@ -128,7 +138,7 @@ impl Esphome {
     /// Validates the examples, and generates their programs for an ESP32.
     fn examples(&self) -> Result<()> {
         let expected = [
-            ("display", "face", "face->draw(it, 20, 20);"),
+            ("display", "face", "face->add_clip(\"hello\", "),
             ("voice-assistant", "talking-face", "face->set_display(panel, 0, 0, true);"),
         ];
         for (name, program, line) in expected {
@@ -154,6 +164,17 @@ impl Esphome {
             .args(["host.yaml", "clock.cpp", "components"].map(|name| home().join("tests").join(name)))
             .arg(&self.place);
         output(copy)?;
+        let motions = paths::root().join("motions");
+        let mut damaged = fs::read(motions.join("face/hello.ptn"))?;
+        damaged.truncate(60);
+        fs::write(self.place.join("damaged.ptn"), damaged)?;
+        for (from, to) in [
+            (motions.join("face/hello.ptn"), "hello.ptn"),
+            (motions.join("walk.ptn"), "walk.ptn"),
+            (keyed::folder().join("walk.ptn"), "keys.ptn"),
+        ] {
+            fs::copy(from, self.place.join(to))?;
+        }
         let mut find = Command::new(self.environment.join("bin/python"));
         find.args(["-c", "import esphome; print(esphome.__path__[0])"]);
         let package = String::from_utf8(output(find)?.stdout)?;
@@ -266,6 +287,10 @@ fn check(printed: &str) -> Result<()> {
     // Of the 16,000 pixels around the mouth, those that another emote, an open mouth and speech change.
     in_range("happy", 0, 200, 8_000)?;
     in_range("unknown", 0, 0, 0)?;
+    in_range("clip", 0, 100, 8_000)?;
+    in_range("playing", 0, 0, 0)?;
+    in_range("finished", 0, 1, 1)?;
+    ensure!(numbers(printed, "refused")? == [0, 0, 0], "clips that do not play are refused");
     in_range("level", 0, 500, 8_000)?;
     in_range("closed", 0, 0, 50)?;
     in_range("lips", 0, 200, 8_000)?;

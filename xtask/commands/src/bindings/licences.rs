@@ -9,13 +9,13 @@ use tempfile::TempDir;
 
 use super::output;
 use crate::wheels::addon;
-use crate::{arduino, esphome};
+use crate::{arduino, esp_idf, esphome, micropython};
 
 /// The files.
 pub const NAMES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /// The folders of `bindings` that are copied or packed.
-pub const FOLDERS: [&str; 8] = ["c", "arduino", "lvgl", "xiaozhi", "esphome", "micropython", "python", "blender"];
+pub const FOLDERS: [&str; 9] = ["c", "arduino", "esp-idf", "lvgl", "xiaozhi", "esphome", "micropython", "python", "blender"];
 
 /// Looks into the folders, the Arduino library, the ESPHome component and the Blender add-on; the step of the wheel looks into that.
 pub fn run(folder: &TempDir) -> Result<()> {
@@ -25,9 +25,13 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let library = folder.path().join("licences");
     arduino::write(&library)?;
     check(&library)?;
-    let component = folder.path().join("component");
-    esphome::write(&component)?;
-    check(&component)?;
+    for (name, write) in
+        [("esphome", esphome::write as fn(&Path) -> Result<usize>), ("esp-idf", esp_idf::write), ("mp", micropython::write)]
+    {
+        let packed = folder.path().join(format!("licences-{name}"));
+        write(&packed)?;
+        check(&packed)?;
+    }
     // What a wheel has inside makes no difference here.
     let wheel = folder.path().join("any.whl");
     std::fs::write(&wheel, "")?;
