@@ -171,6 +171,7 @@ mod tests {
     use super::*;
     use embedded_graphics::pixelcolor::BinaryColor;
     use embedded_hal::i2c::{ErrorKind, ErrorType};
+    use pantin_figure::surface::Layout;
 
     /// A panel that stores what it was sent, and counts bytes with their addresses.
     struct Panel {
