@@ -30,9 +30,12 @@ impl Firmware {
         Self::built(features, package, program, target, clips, Settings::default())
     }
 
-    /// Builds a program that other people flash. It has no log for debug probes, and holds no paths of this machine.
-    pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
+    /// Builds a program that other people flash, whose pictures are turned by a number of degrees, or as the environment says. It has no log for debug probes, and holds no paths of this
+    /// machine.
+    pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path], rotation: u16) -> Result<Self> {
+        let turned = (rotation != 0).then(|| ("PANTIN_ROTATION".into(), rotation.to_string().into())).into_iter();
         let settings = Settings {
+            environment: turned.collect(),
             arguments: ["--locked", "--no-default-features"].map(OsString::from).into(),
             flags: vec!["-Cstrip=debuginfo".into()],
             ..Settings::default()

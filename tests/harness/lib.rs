@@ -1,6 +1,8 @@
 //! Emulators, screens and images of the firmware, for tests and for `cargo xtask`.
 
 #[cfg(feature = "full")]
+pub mod alone;
+#[cfg(feature = "full")]
 pub mod animator;
 pub mod build;
 #[cfg(feature = "full")]

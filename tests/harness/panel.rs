@@ -185,8 +185,7 @@ impl Panel for Colour {
 
 /// A monochrome display over I2C.
 pub struct Mono {
-    /// Columns of the memory, and the first that the glass shows.
-    columns: [usize; 2],
+    glass: MonoGlass,
     address: u16,
     memory: Vec<u8>,
     is_lit: bool,
@@ -194,24 +193,69 @@ pub struct Mono {
     at: [usize; 2],
     /// The bytes of a transfer to the display.
     transfer: Option<Vec<u8>>,
-    /// Arguments of the last command that are still to come.
+    /// The last command, and arguments of it that are still to come.
+    command: u8,
     skip: usize,
+    /// Rows that the controller drives, less one, and how it takes the glass's rows to be wired.
+    rows: u8,
+    row_pins: u8,
+    /// Whether the current comes from the controller's own reference.
+    has_current: bool,
 }
+
+/// The glass of a monochrome display, and how it is wired.
+#[derive(Clone, Copy, Debug)]
+struct MonoGlass {
+    /// Columns of the memory, and the first that the glass shows.
+    columns: [usize; 2],
+    /// Columns and rows of the glass.
+    size: [usize; 2],
+    /// The argument of the command 0xda that says how its rows are wired.
+    row_pins: u8,
+    /// There is no resistor for the current on the module.
+    lacks_resistor: bool,
+    is_sh1106: bool,
+}
+
+const SSD1306: MonoGlass =
+    MonoGlass { columns: [128, 0], size: [128, 64], row_pins: 0x12, lacks_resistor: false, is_sh1106: false };
 
 impl Mono {
     /// An SH1106: 132 columns, of which the glass shows 128 from the third on.
     pub fn sh1106(address: u8) -> Self {
-        Self::new([132, 2], address)
+        Self::new(MonoGlass { columns: [132, 2], is_sh1106: true, ..SSD1306 }, address)
     }
 
     /// An SSD1306.
     pub fn ssd1306(address: u8) -> Self {
-        Self::new([128, 0], address)
+        Self::new(SSD1306, address)
     }
 
-    fn new(columns: [usize; 2], address: u8) -> Self {
-        let memory = (0..columns[0] * 8).map(|index| (index * 37) as u8).collect();
-        Mono { columns, address: address.into(), memory, is_lit: false, at: [0; 2], transfer: None, skip: 0 }
+    /// An SSD1306 with a glass of 128x32 pixels, whose rows are wired one after the other.
+    pub fn of_128x32(address: u8) -> Self {
+        Self::new(MonoGlass { size: [128, 32], row_pins: 0x02, ..SSD1306 }, address)
+    }
+
+    /// One with a glass of 72x40 pixels, which shows the columns in the middle.
+    pub fn of_72x40(address: u8) -> Self {
+        Self::new(MonoGlass { columns: [128, 28], size: [72, 40], lacks_resistor: true, ..SSD1306 }, address)
+    }
+
+    fn new(glass: MonoGlass, address: u8) -> Self {
+        let memory = (0..glass.columns[0] * 8).map(|index| (index * 37) as u8).collect();
+        Mono {
+            glass,
+            address: address.into(),
+            memory,
+            is_lit: false,
+            at: [0; 2],
+            transfer: None,
+            command: 0,
+            skip: 0,
+            rows: 63,
+            row_pins: 0x12,
+            has_current: !glass.lacks_resistor,
+        }
     }
 
     /// Takes a transfer: control bytes, commands and data.
@@ -228,8 +272,9 @@ impl Mono {
 
     fn write(&mut self, byte: u8) {
         let [page, column] = self.at;
-        let index = page * self.columns[0] + column;
-        assert!(column < self.columns[0], "a byte in column {column}");
+        let columns = self.glass.columns[0];
+        let index = page * columns + column;
+        assert!(column < columns, "a byte in column {column}");
         self.memory[index] = byte;
         self.at[1] += 1;
     }
@@ -237,16 +282,23 @@ impl Mono {
     fn command(&mut self, code: u8) {
         if self.skip > 0 {
             self.skip -= 1;
+            match self.command {
+                0xa8 => self.rows = code,
+                0xda => self.row_pins = code,
+                0xad => self.has_current |= code & 0x30 == 0x30,
+                _ => {}
+            }
             return;
         }
-        let is_sh1106 = self.columns[1] > 0;
+        self.command = code;
+        let MonoGlass { is_sh1106, lacks_resistor, .. } = self.glass;
         match code {
             0x00..=0x0f => self.at[1] = self.at[1] & 0xf0 | usize::from(code),
             0x10..=0x1f => self.at[1] = self.at[1] & 0x0f | usize::from(code & 15) << 4,
             0xb0..=0xb7 => self.at[0] = usize::from(code & 7),
             0xae | 0xaf => self.is_lit = code == 0xaf,
             0x81 | 0xa8 | 0xd3 | 0xd5 | 0xd9 | 0xda | 0xdb => self.skip = 1,
-            0xad if is_sh1106 => self.skip = 1,
+            0xad if is_sh1106 || lacks_resistor => self.skip = 1,
             0x20 | 0x8d if !is_sh1106 => self.skip = 1,
             0x2e if !is_sh1106 => {}
             0x40..=0x7f | 0xa0 | 0xa1 | 0xa4 | 0xa6 | 0xc0 | 0xc8 => {}
@@ -269,12 +321,15 @@ impl Panel for Mono {
     }
 
     fn picture(&self) -> Picture {
-        let display = Display { width: 128, height: 64, depth: Depth::Mono, way: Way::Bus("i2c") };
+        let MonoGlass { columns: [columns, first], size: [width, height], row_pins, .. } = self.glass;
+        let display = Display { width, height, depth: Depth::Mono, way: Way::Bus("i2c") };
+        let is_lit = self.is_lit && self.has_current && (usize::from(self.rows) + 1, self.row_pins) == (height, row_pins);
         let pixel = |index: usize| {
-            let at = index / 1024 * self.columns[0] + self.columns[1] + index % 128;
-            u16::from(self.is_lit && self.memory[at] >> (index / 128 % 8) & 1 != 0)
+            let (row, column) = (index / width, index % width);
+            let at = row / 8 * columns + first + column;
+            u16::from(is_lit && self.memory[at] >> (row % 8) & 1 != 0)
         };
-        Picture { display, pixels: (0..128 * 64).map(pixel).collect() }
+        Picture { display, pixels: (0..width * height).map(pixel).collect() }
     }
 }
 

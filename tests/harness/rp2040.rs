@@ -36,6 +36,8 @@ pub struct Request {
     servos: usize,
     harm: Option<&'static str>,
     plugs: Option<Vec<(f64, &'static str)>>,
+    cables: Option<Vec<(f64, &'static str)>>,
+    presses: Option<Vec<(u32, f64, f64)>>,
     noise: bool,
     usb: bool,
     packets: bool,
@@ -43,6 +45,7 @@ pub struct Request {
     cut: Option<u64>,
     seconds: f64,
     save: Option<PathBuf>,
+    every: usize,
     out: Option<PathBuf>,
     #[serde(skip)]
     shown: Option<Display>,
@@ -153,6 +156,8 @@ impl Request {
             servos: 0,
             harm: None,
             plugs: None,
+            cables: None,
+            presses: None,
             noise: false,
             usb: false,
             packets: false,
@@ -160,6 +165,7 @@ impl Request {
             cut: None,
             seconds: 60.0,
             save: None,
+            every: 1,
             out: None,
             shown: display,
         }
@@ -229,6 +235,25 @@ impl Request {
     /// display holds SDA for five clocks.
     pub fn plugs(mut self, plugs: &[(f64, &'static str)]) -> Request {
         self.plugs = Some(plugs.to_vec());
+        self
+    }
+
+    /// Pulls the USB cable `out` and plugs it `in` after these seconds, while the board has other power. Whenever the port is open again, the PC asks
+    /// for the list of letters.
+    pub fn cables(mut self, plugs: &[(f64, &'static str)]) -> Request {
+        self.cables = Some(plugs.to_vec());
+        self.usb()
+    }
+
+    /// Keeps one of so many pictures: the last of each.
+    pub fn every(mut self, count: usize) -> Request {
+        self.every = count;
+        self
+    }
+
+    /// Presses the buttons of these pins after seconds, for seconds.
+    pub fn presses(mut self, presses: &[(u32, f64, f64)]) -> Request {
+        self.presses = Some(presses.to_vec());
         self
     }
 

@@ -14,7 +14,7 @@ use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::solid::{Look, look_text};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
-use crate::display::{self, Depth, Display, Picture};
+use crate::display::{self, Depth, Display, Picture, Way};
 use crate::sync;
 
 /// Larger than any board's capacity; the pictures do not depend on it.
@@ -180,7 +180,7 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
 }
 
 /// What a framebuffer shows.
-fn picture<L: Layout<Ink: Value>>(display: Display, framebuffer: &Framebuffer<L>) -> Picture {
+pub fn picture<L: Layout<Ink: Value>>(display: Display, framebuffer: &Framebuffer<L>) -> Picture {
     let Display { width, height, .. } = display;
     let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
     Picture { display, pixels }
@@ -239,18 +239,31 @@ impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Sim
     }
 }
 
+/// A display of a layout's size and colours, on no bus.
+pub fn display_of<L: Layout<Ink: Value>>() -> Display {
+    Display { width: L::WIDTH, height: L::HEIGHT, depth: <L::Ink as Value>::DEPTH, way: Way::Bus("memory") }
+}
+
 /// A pixel as [`Depth`] counts it.
-trait Value {
+pub trait Value {
+    /// How it counts.
+    const DEPTH: Depth;
+
+    /// The pixel's value.
     fn value(self) -> u16;
 }
 
 impl Value for BinaryColor {
+    const DEPTH: Depth = Depth::Mono;
+
     fn value(self) -> u16 {
         self.is_on().into()
     }
 }
 
 impl Value for Gray4 {
+    const DEPTH: Depth = Depth::Gray4;
+
     fn value(self) -> u16 {
         self.luma().into()
     }
@@ -258,6 +271,8 @@ impl Value for Gray4 {
 
 /// A palette's colour as the Game Boy Advance takes it.
 impl Value for Indexed {
+    const DEPTH: Depth = Depth::Bgr555;
+
     fn value(self) -> u16 {
         let [red, green, blue] = self.rgb().map(|part| u16::from(part >> 3));
         blue << 10 | green << 5 | red
@@ -265,6 +280,8 @@ impl Value for Indexed {
 }
 
 impl Value for Rgb565 {
+    const DEPTH: Depth = Depth::Rgb565;
+
     fn value(self) -> u16 {
         RawU16::from(self).into_inner()
     }

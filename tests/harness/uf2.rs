@@ -10,10 +10,13 @@ use crate::segments::{self, Segment};
 /// The families; the second one is that of programs for the Arm cores.
 const RP2040: u32 = 0xe48b_ff56;
 const RP2350: u32 = 0xe48b_ff59;
+const NRF52840: u32 = 0xada5_2840;
 /// The words of the block that the RP2350's boot ROM looks for in the flash's first 4 KiB: its start, a program for the Arm cores, and its end
 /// (RP2350 data sheet, 5.9.5.1).
 const IMAGE_BLOCK: [u32; 5] = [0xffff_ded3, 0x1021_0142, 0x0000_01ff, 0, 0xab12_3579];
 const SEARCHED: u32 = 4096;
+/// Where boot loaders of boards with an nRF52840 start a program, behind a SoftDevice S140 of version 7, and up to where they take one.
+const NRF52840_PROGRAM: std::ops::Range<u32> = 0x2_7000..0xa_d000;
 /// The flash of the largest boards.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
 /// What the chip's first stage loads and checks: a second stage, and its CRC.
@@ -21,7 +24,7 @@ const SECOND_STAGE: usize = 252;
 
 /// The blocks for the parts of an ELF file that lie in the flash.
 pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
-    let pages = pages(elf)?;
+    let pages = pages(elf, &FLASH)?;
     let first = pages.get(&FLASH.start).context("the image has no second renderer of the boot at the start of the flash")?;
     ensure!(is_second_stage(first), "the image's second renderer of the boot has a wrong CRC: the chip would not start it");
     Ok(uf2::file(RP2040, &pages))
@@ -29,7 +32,7 @@ pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
 
 /// The same for the RP2350, which needs no second stage.
 pub fn of_rp2350_elf(elf: &[u8]) -> Result<Vec<u8>> {
-    let pages = pages(elf)?;
+    let pages = pages(elf, &FLASH)?;
     let first: Vec<u8> = pages.range(FLASH.start..FLASH.start + SEARCHED).flat_map(|(_, page)| page).copied().collect();
     let block = IMAGE_BLOCK.map(u32::to_le_bytes);
     let block = block.as_flattened();
@@ -37,13 +40,24 @@ pub fn of_rp2350_elf(elf: &[u8]) -> Result<Vec<u8>> {
     Ok(uf2::file(RP2350, &pages))
 }
 
+/// The same for the nRF52840 with a boot loader.
+pub fn of_nrf52840_elf(elf: &[u8]) -> Result<Vec<u8>> {
+    let pages = pages(elf, &NRF52840_PROGRAM)?;
+    ensure!(
+        pages.contains_key(&NRF52840_PROGRAM.start),
+        "the boot loader would start no program: none begins at {:#x}",
+        NRF52840_PROGRAM.start
+    );
+    Ok(uf2::file(NRF52840, &pages))
+}
+
 /// The same without a second stage: for an emulator, which needs none.
 pub fn of_bare_elf(elf: &[u8]) -> Result<Vec<u8>> {
-    Ok(uf2::file(RP2040, &pages(elf)?))
+    Ok(uf2::file(RP2040, &pages(elf, &FLASH)?))
 }
 
 /// The pages that a file's segments touch, by address.
-fn pages(elf: &[u8]) -> Result<BTreeMap<u32, [u8; PAGE]>> {
+fn pages(elf: &[u8], flash: &std::ops::Range<u32>) -> Result<BTreeMap<u32, [u8; PAGE]>> {
     let mut pages = BTreeMap::new();
     for Segment { load: start, bytes: data, .. } in segments::of_elf(elf)? {
         if data.is_empty() {
@@ -51,7 +65,7 @@ fn pages(elf: &[u8]) -> Result<BTreeMap<u32, [u8; PAGE]>> {
         }
         let end = u64::from(start) + data.len() as u64;
         ensure!(
-            FLASH.contains(&start) && end <= u64::from(FLASH.end),
+            flash.contains(&start) && end <= u64::from(flash.end),
             "a segment is loaded to {start:#010x}, {} bytes: not into the flash, so that it would be lost when power goes",
             data.len()
         );

@@ -12,11 +12,15 @@
 //   packets   whether keys have the wish for the next picture among them, as they share the line with packets
 //   servos    how many writes of pulse widths are waited for
 //   plugs     when what happens to the SSD1306's wires, in seconds: [[0.1, "out"], ...], as ssd1306.mjs says; or null
+//   cables    the same of the USB cable, which then does not supply the board: "out" and "in"; whenever a program on the PC has opened the port, it
+//             asks for the list of letters
+//   presses   the board's buttons: [[pin, seconds, seconds that it is held], ...]; or null
 //   noise     whether a byte with a framing error comes before each byte of a message
 //   harm      "fault", "hang" or null: what strikes after a tenth of a second
 //   cut       the change of the flash, counted from 0, amid which power goes; else null
 //   seconds   of the chip's time at most
 //   save      a file for all bytes of the flash at the end, or null
+//   every     of how many pictures one is kept
 //   out       a file for the pictures: their pixels, 16 bits each with the low byte first; the last one is what is shown at the end
 
 import { closeSync, openSync, readFileSync, writeFileSync, writeSync } from 'node:fs';
@@ -25,7 +29,7 @@ import { Ssd1306 } from './ssd1306.mjs';
 import { St7789 } from './st7789.mjs';
 import { Pc } from './usb.mjs';
 
-const [IN_STEP, NEXT, SHOWN] = [0x16, 0x0a, 0x46];
+const [IN_STEP, NEXT, SHOWN, HELP] = [0x16, 0x0a, 0x46, 0x3f];
 // Marked stretches of a frame: decode, place, draw, show.
 const STRETCHES = 4;
 // Register of a pair of pulse widths.
@@ -47,6 +51,10 @@ for (const [seconds, state] of request.plugs ?? []) {
   if (seconds === 0) display.plug(state);
   else chip.clock.createAlarm(() => display.plug(state)).schedule(seconds * 1e9);
 }
+for (const [pin, seconds, held] of request.presses ?? []) {
+  chip.clock.createAlarm(() => chip.gpio[pin].setInputValue(false)).schedule(seconds * 1e9);
+  chip.clock.createAlarm(() => chip.gpio[pin].setInputValue(true)).schedule((seconds + held) * 1e9);
+}
 if (request.display === 'st7789') display.attach(chip, chip.spi[0], request.timed);
 
 const out = request.out && openSync(request.out, 'w');
@@ -61,7 +69,7 @@ machine.onStretch = (count) => {
   frames.push({ cycles, nanos: machine.time, bytes: (display?.bytes ?? 0) - bytes, number: null });
   cycles = [];
   bytes = display?.bytes ?? 0;
-  if (out) writeSync(out, Buffer.from(display.picture().buffer));
+  if (out && frames.length % request.every === 0) writeSync(out, Buffer.from(display.picture().buffer));
   if (request.messages) {
     if (frames.length === 1 && !request.usb) say(request.messages[0]);
     if (answers.length === request.messages.length && frames.length === answers.at(-1).frames + request.pictures) machine.end('done');
@@ -125,6 +133,10 @@ const pc =
     usb.push(byte);
     if (request.messages) hear(byte);
   });
+if (request.cables) pc.onOpen = () => pc.send([HELP]);
+for (const [seconds, state] of request.cables ?? []) {
+  chip.clock.createAlarm(() => pc.plug(state === 'in')).schedule(seconds * 1e9);
+}
 if (request.usb && request.messages) pc.onOpen = () => say(request.messages[0]);
 if (request.keys) {
   // As soon as it listens.

@@ -75,7 +75,8 @@ export class Ssd1306 {
       after(9, () => bus.completeConnect(this.plugged && !this.clocks && address === ADDRESS));
     };
     bus.onWriteByte = (byte) => {
-      this.take(byte);
+      // Without power it takes nothing of a transfer that goes on.
+      if (this.plugged) this.take(byte);
       this.bytes += 1;
       after(9, () => bus.completeWrite(this.plugged));
     };

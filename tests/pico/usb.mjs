@@ -12,6 +12,8 @@ const READY = Uint8Array.of(0x21, 0x22, 3, 0, 0, 0, 0, 0);
 const [DISABLE, INTERRUPT] = [0x180, 1 << 5];
 // The registers of buffers for the PC, and the bit that is set until it has taken one.
 const [IN_CONTROL, AVAILABLE] = [0x80, 1 << 10];
+// The status register, and the bit that says that the bus is suspended, which a written 1 clears on the chip and not in the emulator.
+const [STATUS, SUSPENDED] = [0x50, 1 << 4];
 // Nanoseconds until a program opens the port, and until it uses it.
 const OPENS = 1e6;
 
@@ -22,6 +24,12 @@ export class Pc {
     const read = info.readUint32.bind(info);
     info.readUint32 = (offset) => (offset === CHIP_ID ? VERSION_2 : read(offset));
     this.usb = chip.usbCtrl;
+    this.isPlugged = true;
+    const write = this.usb.writeUint32.bind(this.usb);
+    this.usb.writeUint32 = (offset, value) => {
+      if (offset === STATUS && value & SUSPENDED) this.suspend(false);
+      write(offset, value);
+    };
     this.isOpen = false;
     this.onOpen = () => {};
     // How often the board disabled the interrupt, because its receive buffer was full.
@@ -36,10 +44,12 @@ export class Pc {
     this.port = port;
     // A program opens the port some time after the PC has chosen the configuration.
     const opens = chip.clock.createAlarm(() => {
+      if (!this.isPlugged) return;
       this.usb.sendSetupPacket(READY);
       opened.schedule(OPENS);
     });
     const opened = chip.clock.createAlarm(() => {
+      if (!this.isPlugged) return;
       this.isOpen = true;
       this.onOpen();
     });
@@ -62,6 +72,7 @@ export class Pc {
       };
     };
     port.onSerialData = (bytes) => {
+      if (!this.isPlugged) return;
       if (this.unread) this.unread.bytes = bytes;
       else bytes.forEach((byte) => onByte(byte));
     };
@@ -76,6 +87,26 @@ export class Pc {
       this.rooms.set(endpoint, size);
       this.fill();
     };
+  }
+
+  // Pulls the cable out, or plugs it in: the board has other power. Without frames of the bus the chip says that it is suspended; the PC resets a
+  // device that is plugged in.
+  plug(isIn) {
+    this.isPlugged = isIn;
+    this.isOpen = false;
+    this.unsent = [];
+    this.rooms.clear();
+    this.unread = null;
+    const { usb, port } = this;
+    for (const alarm of [...usb.endpointReadAlarms, ...usb.endpointWriteAlarms]) alarm.buffers = [];
+    if (!isIn) return this.suspend(true);
+    Object.assign(port, { initialized: false, descriptorsSize: null, descriptors: [], inEndpoint: -1, outEndpoint: -1 });
+    usb.resetDevice();
+  }
+
+  suspend(isSuspended) {
+    this.usb.sieStatus = isSuspended ? this.usb.sieStatus | SUSPENDED : this.usb.sieStatus & ~SUSPENDED;
+    this.usb.sieStatusUpdated();
   }
 
   // Sends bytes, in packets, as the board takes them.

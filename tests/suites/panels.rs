@@ -205,28 +205,37 @@ impl I2c for Bus<'_> {
 
 #[test]
 fn monochrome_displays_are_found_at_both_addresses() {
-    type Drivers<'a> = fn(Bus<'a>) -> Ssd1306<Bus<'a>>;
     for address in ADDRESSES {
-        let kinds: [(_, _, Drivers); 2] =
-            [("ssd1306", Mono::ssd1306(address), Ssd1306::new), ("sh1106", Mono::sh1106(address), Ssd1306::sh1106)];
-        for (name, panel, driver) in kinds {
-            let panel = RefCell::new(panel);
-            // Not outlived by the driver.
-            let panel: &'static RefCell<Mono> = Box::leak(Box::new(panel));
-            let mut driver = driver(Bus(panel, address));
-            let mut count = 0;
-            simulator::present::<MonoPages<128, 64, 1024>>(&clips(), &KEYS, |frame| {
-                driver.show(frame).unwrap();
-                let shown = panel.borrow().picture();
-                let pixels = (0..128 * 64).map(|index| (frame.pixel(index % 128, index / 128) == BinaryColor::On).into());
-                let drawn = Picture { display: shown.display, pixels: pixels.collect() };
-                if let Some(difference) = screen::difference(&shown, &drawn) {
-                    panic!("{name} at {address:#x}, picture {count}: {difference}");
-                }
-                count += 1;
-                keep(name, &shown);
-            })
-            .unwrap();
-        }
+        monochrome("ssd1306", Mono::ssd1306(address), address, Ssd1306::new);
+        monochrome("sh1106", Mono::sh1106(address), address, Ssd1306::sh1106);
+        monochrome("ssd1306-128x32", Mono::of_128x32(address), address, Ssd1306::of_128x32);
+        monochrome("ssd1306-72x40", Mono::of_72x40(address), address, Ssd1306::of_72x40);
     }
+}
+
+/// Plays on a monochrome display at an address, and compares what one sees with the framebuffer.
+fn monochrome<const W: usize, const H: usize, const BYTES: usize>(
+    name: &str,
+    panel: Mono,
+    address: u8,
+    driver: fn(Bus<'static>) -> Ssd1306<Bus<'static>, MonoPages<W, H, BYTES>>,
+) {
+    // Not outlived by the driver.
+    let panel: &'static RefCell<Mono> = Box::leak(Box::new(RefCell::new(panel)));
+    let mut driver = driver(Bus(panel, address));
+    let mut count = 0;
+    simulator::present::<MonoPages<W, H, BYTES>>(&clips(), &KEYS, |frame| {
+        driver.show(frame).unwrap();
+        let shown = panel.borrow().picture();
+        let pixels = (0..W * H).map(|index| (frame.pixel(index % W, index / W) == BinaryColor::On).into());
+        let drawn = Picture { display: shown.display, pixels: pixels.collect() };
+        assert_eq!((shown.display.width, shown.display.height), (W, H));
+        if let Some(difference) = screen::difference(&shown, &drawn) {
+            panic!("{name} at {address:#x}, picture {count}: {difference}");
+        }
+        assert!(!shown.is_dark());
+        count += 1;
+        keep(name, &shown);
+    })
+    .unwrap();
 }

@@ -6,6 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use board_drivers::servo::{self, JointAngle, Law, Servo, SoftStart};
+use embedded_graphics::Drawable;
+use embedded_graphics::geometry::Point;
+use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_4X6};
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::text::{Baseline, Text};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
 use harness::lossy::arrivals;
@@ -442,4 +447,158 @@ fn poses_of_a_stream_come_over_the_usb_port() {
     let lines: Vec<Vec<u8>> = frames.iter().map(|bytes| [&bytes[..], &next[..next.len()]].concat()).collect();
     let outcome = in_step(Request::new(&image, OLED).usb().packets(), &lines.iter().map(Vec::as_slice).collect::<Vec<_>>());
     equal(&outcome, &expected);
+}
+
+/// What the list of letters ends with, which the program sends for `?`.
+const LIST_END: &[u8] = b"? this list\r\n";
+
+/// Pulls display and USB cable out, and plugs them in again, a number of times.
+fn survives_unplugging(times: usize) {
+    /// A display is out for this time, and a cable. In again, a PC takes 15 ms to know the board, and opens its port.
+    const DISPLAY_OUT: f64 = 0.012;
+    const CABLE_OUT: f64 = 0.005;
+    const PERIOD: f64 = 0.037;
+    let (_folder, image) = image("usb");
+    let begun = |index: usize| 0.1 + PERIOD * index as f64;
+    // Not in step with the pictures, which are 8.3 ms apart.
+    let display: Vec<_> = (0..times).flat_map(|index| [(begun(index), "out"), (begun(index) + DISPLAY_OUT, "in")]).collect();
+    let cables: Vec<_> =
+        (0..times).flat_map(|index| [(begun(index) + 0.003, "out"), (begun(index) + 0.003 + CABLE_OUT, "in")]).collect();
+    let seconds = begun(times) + 0.1;
+    let request = Request::new(&image, OLED).pictures(usize::MAX).plugs(&display).cables(&cables).seconds(seconds);
+    let outcome = request.run().unwrap();
+    assert_eq!(outcome.ended, "limit", "no reset, no fault");
+    let lists = outcome.usb.windows(LIST_END.len()).filter(|bytes| *bytes == LIST_END).count();
+    // Once before the first time, unless the cable is out before.
+    assert!((times..=times + 1).contains(&lists), "the port answered {lists} times");
+    let pictures = expected(OLED, &[&b""[..]; 160]);
+    let is_of_the_walk = |shown: &Picture| pictures.iter().any(|(_, picture)| picture == shown);
+    let state = |nanos: f64| display.iter().rev().find(|(at, _)| at * 1e9 <= nanos).map_or("in", |(_, state)| state);
+    let mut whole = 0;
+    for (shown, frames) in outcome.pictures[1..].iter().zip(outcome.frames.windows(2)) {
+        let [before, now] = frames else { unreachable!() };
+        match [before.nanos, now.nanos].map(state) {
+            // Set up again, and whole.
+            ["in", "in"] => {
+                assert!(is_of_the_walk(shown), "at {} ms", now.nanos / 1e6);
+                whole += 1;
+            }
+            [_, "out"] => assert!(shown.is_dark(), "at {} ms", now.nanos / 1e6),
+            _ => {}
+        }
+    }
+    assert!(whole >= times, "{whole} pictures after {times} times");
+    assert!(is_of_the_walk(outcome.last.as_ref().unwrap()));
+    println!("unplugged {times} times: {whole} whole pictures, {lists} lists of letters");
+}
+
+#[test]
+fn display_and_usb_cable_are_unplugged_and_plugged_in() {
+    if !setup::host_only("unplugging the Pico") {
+        survives_unplugging(25);
+    }
+}
+
+/// `cargo test -p harness --test suites -- --ignored --nocapture a_thousand_times`
+#[test]
+#[ignore = "37 seconds of the chip take minutes in the emulator"]
+fn display_and_usb_cable_are_unplugged_a_thousand_times() {
+    if !setup::host_only("unplugging the Pico a thousand times") {
+        survives_unplugging(1000);
+    }
+}
+
+/// The lines at the top and at the bottom of a display, as `pantin_app` writes them, and nothing else.
+fn lines([top, bottom]: [&str; 2]) -> Framebuffer<MonoPages<128, 64, 1024>> {
+    let mut frame = Framebuffer::new();
+    let style = MonoTextStyle::new(&FONT_4X6, BinaryColor::On);
+    for (line, y) in [(top, 0), (bottom, 58)] {
+        Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(&mut frame).unwrap();
+    }
+    frame
+}
+
+/// Whether a picture has these lines. Their ground is dark, also over a figure.
+fn has_lines(picture: &Picture, words: [&str; 2]) -> bool {
+    let expected = lines(words);
+    words.iter().zip([0, 58]).all(|(line, top)| {
+        let mut pixels = (top..top + 6).flat_map(|y| (0..4 * line.len()).map(move |x| (x, y)));
+        pixels.all(|(x, y)| picture.pixels[y * OLED.width + x] == u16::from(expected.pixel(x, y).is_on()))
+    })
+}
+
+/// Clips of 20 pictures a second, with which the emulator needs a sixth of the time.
+fn slow_clips(folder: &Path) -> Vec<PathBuf> {
+    let clip = |name: &str| {
+        let clip = folder.join(Path::new(name).file_stem().unwrap()).with_extension("ptn");
+        clips::convert_at(&paths::root().join("motions").join(name), 20, &clip).unwrap();
+        clip
+    };
+    ["walk.keys", "face/hello.keys", "emotes/happy.keys"].map(clip).into()
+}
+
+/// What a Pico that is alone showed.
+struct Alone {
+    /// When which clip's caption appeared.
+    begun: Vec<(f64, String)>,
+    /// When the display became dark, or lit.
+    dark: Vec<(f64, bool)>,
+}
+
+/// Nobody gives commands to a Pico for some seconds; then `select` is pressed.
+fn alone(seconds: f64, every: usize) -> Alone {
+    const SELECT: u32 = 14;
+    let folder = tempfile::tempdir().unwrap();
+    let clips = slow_clips(folder.path());
+    let (_image, image) = program("pico", "face", &clips);
+    let captions = clips.iter().map(|path| {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let size = format!("{} bytes", fs::metadata(path).unwrap().len());
+        (name, size)
+    });
+    let captions: Vec<(String, String)> = captions.collect();
+    let request = Request::new(&image, OLED).pictures(usize::MAX).seconds(seconds + 3.0).every(every);
+    let outcome = request.presses(&[(SELECT, seconds, 0.2)]).run().unwrap();
+    assert_eq!(outcome.ended, "limit", "no reset, no fault");
+    let times = outcome.frames.iter().skip(every - 1).step_by(every).map(|frame| frame.nanos / 1e9);
+    let (mut begun, mut dark) = (vec![], vec![]);
+    for (time, picture) in times.zip(&outcome.pictures) {
+        if dark.last().is_none_or(|(_, was): &(f64, bool)| *was != picture.is_dark()) {
+            dark.push((time, picture.is_dark()));
+        }
+        let Some((name, _)) = captions.iter().find(|(name, size)| has_lines(picture, [name, size])) else { continue };
+        if begun.last().is_none_or(|(_, last): &(f64, String)| last != name) {
+            begun.push((time, name.clone()));
+        }
+    }
+    println!("{seconds} s alone: {} pictures; clips {begun:?}; dark {dark:?}", outcome.frames.len());
+    Alone { begun, dark }
+}
+
+#[test]
+fn a_pico_that_is_alone_plays_clip_after_clip_and_a_press_plays_the_next() {
+    if setup::host_only("a Pico that is alone") {
+        return;
+    }
+    let Alone { begun, dark } = alone(12.5, 1);
+    let names: Vec<&str> = begun.iter().map(|(_, name)| name.as_str()).collect();
+    assert_eq!(names, ["hello", "happy"], "the first clip has no caption");
+    assert!((10.0..11.5).contains(&begun[0].0) && (12.5..13.0).contains(&begun[1].0), "{begun:?}");
+    assert_eq!(dark.len(), 1, "it stays lit");
+}
+
+/// `cargo test -p harness --test suites -- --ignored --nocapture ten_minutes`
+#[test]
+#[ignore = "ten minutes of the chip take more than a minute of a processor in the emulator"]
+fn after_ten_minutes_alone_a_pico_is_dark_until_a_press() {
+    if setup::host_only("ten minutes of a Pico that is alone") {
+        return;
+    }
+    let Alone { begun, dark } = alone(604.0, 10);
+    // 600 s of clips that stay for 10 to 13 s.
+    assert!((45..=60).contains(&begun.len()), "{} clips", begun.len());
+    assert!(begun.windows(2).all(|two| (9.0..14.0).contains(&(two[1].0 - two[0].0))), "{begun:?}");
+    let [(_, false), (dark_from, true), (lit_from, false)] = dark[..] else { panic!("{dark:?}") };
+    // The emulator's timer begins each clip with a tick, by which the board's time is ahead: 55 times 50 ms, less what setting a clip up takes.
+    assert!((597.0..601.0).contains(&dark_from) && (604.0..605.0).contains(&lit_from), "{dark:?}");
 }

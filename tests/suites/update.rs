@@ -140,7 +140,7 @@ fn shows(session: &mut Session, film: &Film, what: &str) {
 }
 
 /// The boards of the table: Rust target, all of the flash, and how far from the slots' place in it the processor reads them.
-const FLASHES: [(&str, &str, Range<u64>, u64); 7] = [
+const FLASHES: [(&str, &str, Range<u64>, u64); 8] = [
     ("blackpill", "thumbv7em-none-eabihf", 0x0800_0000..0x0808_0000, 0),
     ("esp32-c3", "riscv32imc-unknown-none-elf", 0..0x40_0000, 0x3c40_0000 - 0x3e_0000),
     ("microbit", "thumbv6m-none-eabi", 0..0x4_0000, 0),
@@ -148,6 +148,7 @@ const FLASHES: [(&str, &str, Range<u64>, u64); 7] = [
     ("nrf52840-dk", "thumbv7em-none-eabihf", 0..0x10_0000, 0),
     ("nucleo-f411re", "thumbv7em-none-eabihf", 0x0800_0000..0x0808_0000, 0),
     ("pico", "thumbv6m-none-eabi", 0x1000_0000..0x1020_0000, 0),
+    ("xiao-nrf52840", "thumbv7em-none-eabihf", 0x2_7000..0xa_d000, 0),
 ];
 /// Where `espflash` puts a program, which it packs out of parts that are linked elsewhere, each into whole pages of the mapping.
 const PACKED: u64 = 0x1_0000;
@@ -156,7 +157,8 @@ const PACKED: u64 = 0x1_0000;
 fn memory_maps_keep_the_regions_of_the_table_free() {
     assert!(REGIONS.iter().map(|region| region.board).eq(FLASHES.iter().map(|(board, ..)| *board)));
     for (region, (board, target, flash, away)) in REGIONS.iter().zip(FLASHES) {
-        let firmware = Firmware::featuring("update", board, board, target, &[]).unwrap();
+        let (features, package) = if board == "xiao-nrf52840" { ("update,pins-xiao", "nrf52840-dk") } else { ("update", board) };
+        let firmware = Firmware::featuring(features, package, package, target, &[]).unwrap();
         let bytes = fs::read(firmware.elf()).unwrap();
         let file = ElfFile32::<Endianness>::parse(&*bytes).unwrap();
         let Region { address: start, slot, sector, word, .. } = *region;

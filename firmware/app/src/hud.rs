@@ -6,7 +6,7 @@ use crate::source::{Status, TextLine};
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
-use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyleBuilder, ascii::FONT_4X6, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::surface::{Framebuffer, Layout};
@@ -58,11 +58,23 @@ pub(crate) fn lines<B: Board>(lines: [&str; 2], target: &mut Framebuffer<B::Layo
     }
 }
 
+/// The font of a display.
+const fn font<L: Layout>() -> &'static MonoFont<'static> {
+    if L::HEIGHT >= LARGE_ROWS { &FONT_6X10 } else { &FONT_4X6 }
+}
+
+/// Letters in a line of a display.
+pub(crate) const fn columns<L: Layout>() -> usize {
+    L::WIDTH / font::<L>().character_size.width as usize
+}
+
 /// Draws a line at the top and one at the bottom.
 #[inline(always)]
 fn draw<L: Layout>([top, bottom]: [&str; 2], target: &mut Framebuffer<L>) {
-    let font: &MonoFont = const { if L::HEIGHT >= LARGE_ROWS { &FONT_6X10 } else { &FONT_4X6 } };
-    let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
+    let font = const { font::<L>() };
+    let letters = L::Ink::of(BodyPart::Middle, SHADE);
+    // On a small display the text is over the figure: its ground is dark.
+    let style = MonoTextStyleBuilder::new().font(font).text_color(letters).background_color(L::Ink::DARK).build();
     let last_row = L::HEIGHT as i32 - font.character_size.height as i32;
     for (line, y) in [(top, 0), (bottom, last_row)] {
         // Drawing on a framebuffer cannot fail.

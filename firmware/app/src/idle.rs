@@ -25,7 +25,7 @@ pub(crate) struct Idle {
     /// Whether another clip played before.
     moved_on: bool,
     /// Whether the display stays lit.
-    awake: bool,
+    pub awake: bool,
     /// Whether there is another clip, which follows while nobody gives commands.
     pub several: bool,
 }
@@ -62,6 +62,11 @@ impl Idle {
         carried_out
     }
 
+    /// Whether the person who gave the last command has left.
+    pub fn is_alone(&self) -> bool {
+        self.quiet >= PRESENCE_MS
+    }
+
     /// Whether the display is dark.
     pub fn is_dark(&self) -> bool {
         !self.awake && self.quiet >= DARK_MS
@@ -69,7 +74,7 @@ impl Idle {
 
     /// Whether the clip, which has come to its end, is left for the next one.
     pub fn is_over(&self) -> bool {
-        self.several && self.playing >= STAY_MS && (!self.touched || self.quiet >= PRESENCE_MS)
+        self.several && self.playing >= STAY_MS && (!self.touched || self.is_alone())
     }
 
     /// Whether name and size are shown: not of the first clip, with which a program begins that may have no other.

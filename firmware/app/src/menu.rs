@@ -12,12 +12,13 @@ pub(crate) enum Item {
     Style,
     Speed,
     View,
+    Sleep,
     About,
     Close,
 }
 
 /// In the order in which they follow each other.
-const ITEMS: [Item; 7] = [Item::Clip, Item::Pause, Item::Style, Item::Speed, Item::View, Item::About, Item::Close];
+const ITEMS: [Item; 8] = [Item::Clip, Item::Pause, Item::Style, Item::Speed, Item::View, Item::Sleep, Item::About, Item::Close];
 
 /// Fastest of the speeds that the menu goes through, and slowest, as powers of two.
 const FASTEST: i8 = 1;
@@ -41,6 +42,8 @@ impl Item {
                 1.. => "speed: x2",
             },
             Item::View => "view",
+            Item::Sleep if view_state.idle.awake => "sleep: never",
+            Item::Sleep => "sleep: 10 min",
             Item::About => concat!("Pantin ", env!("CARGO_PKG_VERSION")),
             Item::Close => "close",
         }
@@ -91,18 +94,23 @@ fn choose(view_state: &mut ViewState, item: Item) -> Effect {
             view_state.rate_log2 = if view_state.rate_log2 >= FASTEST { SLOWEST } else { view_state.rate_log2 + 1 };
             return Effect::Rate;
         }
+        Item::Sleep => view_state.idle.awake = !view_state.idle.awake,
         Item::About => {}
         Item::Close => view_state.menu = None,
     }
     Effect::Nothing
 }
 
-/// The lines at the top and at the bottom of the display: the item, and what presses do.
-pub(crate) fn lines(view_state: &ViewState, at: usize) -> [TextLine; 2] {
+/// What presses do, for displays of at least as many columns of letters, and for narrower ones.
+const PRESSES: &str = "press: next  hold: choose";
+const PRESSES_SHORT: &str = "hold: choose";
+
+/// The lines at the top and at the bottom of a display of `columns` letters: the item, and what presses do.
+pub(crate) fn lines(view_state: &ViewState, at: usize, columns: usize) -> [TextLine; 2] {
     let (mut top, mut bottom) = (TextLine::new(), TextLine::new());
     let _ = top.push_str("> ");
     let _ = top.push_str(item(at).words(view_state));
-    let _ = bottom.push_str("press: next  hold: choose");
+    let _ = bottom.push_str(if columns < PRESSES.len() { PRESSES_SHORT } else { PRESSES });
     [top, bottom]
 }
 
@@ -120,7 +128,10 @@ mod tests {
         let mut seen = vec![];
         for at in 0..ITEMS.len() {
             assert_eq!(view_state.menu, Some(at));
-            seen.push(lines(&view_state, at)[0].clone());
+            // 72 pixels of letters that are 4 wide.
+            let narrow = lines(&view_state, at, 18);
+            assert!(narrow.iter().all(|line| line.len() <= 18), "{narrow:?}");
+            seen.push(lines(&view_state, at, 32)[0].clone());
             assert_eq!(apply(&mut view_state, Command::NextClip), Effect::Nothing);
         }
         seen.dedup();
@@ -142,8 +153,10 @@ mod tests {
     #[test]
     fn styles_and_speeds_come_back() {
         let mut view_state = ViewState::new(&Options::parse([]));
-        for (at, item) in
-            ITEMS.into_iter().enumerate().filter(|(_, item)| matches!(item, Item::Style | Item::Speed | Item::Pause))
+        for (at, item) in ITEMS
+            .into_iter()
+            .enumerate()
+            .filter(|(_, item)| matches!(item, Item::Style | Item::Speed | Item::Pause | Item::Sleep))
         {
             let first = item.words(&view_state);
             let mut passed = 0;

@@ -167,6 +167,9 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         let Some(ticks) = ticks else { break };
         late = late.wrapping_add(ticks.saturating_sub(1));
         view_state.idle.pass(ticks, view_state.tick_ns(frame_ns));
+        if idles && view_state.idle.is_alone() {
+            view_state.menu = None;
+        }
         #[cfg(feature = "update")]
         if listener.is_complete() {
             return Outcome::Received(first.source.frame());
@@ -211,7 +214,7 @@ fn show_text<B: Board, S: Source>(
         framebuffer.clear();
         board.overlay([""; 2]);
     } else if let Some(at) = view_state.menu {
-        let [top, bottom] = menu::lines(view_state, at);
+        let [top, bottom] = menu::lines(view_state, at, hud::columns::<B::Layout>());
         hud::lines([&top, &bottom], framebuffer, board);
     } else if view_state.hud {
         hud::show(view_state, first.entry.name, &first.source.status(), framebuffer, board);

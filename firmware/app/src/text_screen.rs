@@ -3,12 +3,13 @@
 use core::fmt;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
-use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_6X10};
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::surface::{Framebuffer, Layout};
 
-const FONT: &MonoFont = &FONT_6X10;
+/// Displays with fewer rows take the smaller font: a message of a panic has about 60 letters.
+const LARGE_ROWS: usize = 64;
 
 /// A screen of text, written with [`write!`]. Long lines wrap; text below the display is lost.
 pub struct TextScreen<'a, L: Layout> {
@@ -23,20 +24,22 @@ impl<'a, L: Layout> TextScreen<'a, L> {
         TextScreen { framebuffer, at: Point::zero() }
     }
 
+    const FONT: &'static MonoFont<'static> = if L::HEIGHT < LARGE_ROWS { &FONT_4X6 } else { &FONT_6X10 };
+
     fn new_line(&mut self) {
-        self.at = Point::new(0, self.at.y + FONT.character_size.height as i32);
+        self.at = Point::new(0, self.at.y + Self::FONT.character_size.height as i32);
     }
 }
 
 impl<L: Layout> fmt::Write for TextScreen<'_, L> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        let style = MonoTextStyle::new(FONT, L::Ink::of(BodyPart::Middle, u8::MAX));
+        let style = MonoTextStyle::new(Self::FONT, L::Ink::of(BodyPart::Middle, u8::MAX));
         for letter in text.chars() {
             if letter == '\n' {
                 self.new_line();
                 continue;
             }
-            if self.at.x + FONT.character_size.width as i32 > L::WIDTH as i32 {
+            if self.at.x + Self::FONT.character_size.width as i32 > L::WIDTH as i32 {
                 self.new_line();
             }
             let text = Text::with_baseline(letter.encode_utf8(&mut [0; 4]), self.at, style, Baseline::Top).draw(self.framebuffer);

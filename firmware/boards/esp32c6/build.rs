@@ -2,5 +2,6 @@
 
 fn main() {
     board_build::link(&["-Tlinkall.x"]);
+    board_build::display();
     board_build::clips();
 }

@@ -18,7 +18,7 @@ pub struct Region {
 }
 
 /// The boards with a store. Their memory maps contain the same addresses.
-pub const REGIONS: [Region; 7] = [
+pub const REGIONS: [Region; 8] = [
     // The last two sectors of 512 KiB.
     Region { board: "blackpill", address: 0x0804_0000, slot: 128 << 10, sector: 128 << 10, word: 1, family: None },
     // The last 128 KiB of 4 MiB, as flash addresses; the firmware maps them elsewhere.
@@ -33,6 +33,8 @@ pub const REGIONS: [Region; 7] = [
     Region { board: "nucleo-f411re", address: 0x0804_0000, slot: 128 << 10, sector: 128 << 10, word: 1, family: None },
     // The last 512 KiB of 2,048.
     Region { board: "pico", address: 0x1018_0000, slot: 256 << 10, sector: 4096, word: 256, family: Some(0xe48b_ff56) },
+    // The last 128 KiB that its boot loader takes UF2 files for.
+    Region { board: "xiao-nrf52840", address: 0x0008_d000, slot: 64 << 10, sector: 4096, word: 4, family: Some(0xada5_2840) },
 ];
 
 impl Region {

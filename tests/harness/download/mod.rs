@@ -11,7 +11,7 @@ use crate::build::Firmware;
 use crate::{chip, gba, segments, sha256, uf2};
 
 pub use page::page;
-pub use wires::{BOARDS, Board, Bus, Wiring};
+pub use wires::{BOARDS, Board, Bus, SETS, Wiring};
 
 /// A display that an image is for.
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +27,11 @@ pub struct Shown {
 }
 
 /// The displays by name: docs/BOARDS.md.
-pub const DISPLAYS: [Shown; 8] = [
+pub const DISPLAYS: [Shown; 10] = [
     Shown { feature: "", name: "ssd1306", title: "SSD1306, 128x64 (0.96\")", bus: Bus::I2c },
     Shown { feature: "sh1106", name: "sh1106", title: "SH1106, 128x64 (1.3\")", bus: Bus::I2c },
+    Shown { feature: "ssd1306-128x32", name: "ssd1306-128x32", title: "SSD1306, 128x32 (0.91\")", bus: Bus::I2c },
+    Shown { feature: "ssd1306-72x40", name: "ssd1306-72x40", title: "SSD1306, 72x40 (0.42\")", bus: Bus::I2c },
     Shown { feature: "st7789", name: "st7789", title: "ST7789, 240x240 (1.3\", 1.54\")", bus: Bus::Spi },
     Shown { feature: "st7789-135x240", name: "st7789-135x240", title: "ST7789, 135x240 (1.14\")", bus: Bus::Spi },
     Shown { feature: "st7789-170x320", name: "st7789-170x320", title: "ST7789, 170x320 (1.9\")", bus: Bus::Spi },
@@ -45,6 +47,8 @@ pub enum Format {
     Uf2,
     /// A file to drag onto the drive of the RP2350.
     Uf2Rp2350,
+    /// A file to drag onto the drive of a boot loader for the nRF52840.
+    Uf2Nrf52840,
     /// Intel HEX, to drag onto the drive of a debug chip.
     Hex,
     /// The flash's bytes from this address on.
@@ -59,7 +63,7 @@ impl Format {
     /// The file name's extension.
     pub const fn extension(self) -> &'static str {
         match self {
-            Format::Uf2 | Format::Uf2Rp2350 => "uf2",
+            Format::Uf2 | Format::Uf2Rp2350 | Format::Uf2Nrf52840 => "uf2",
             Format::Hex => "hex",
             Format::Bin(_) => "bin",
             Format::Elf => "elf",
@@ -99,9 +103,27 @@ impl Board {
         if self.wirings.is_empty() {
             return vec![image(self.package, None)];
         }
-        let displays = DISPLAYS.into_iter().filter(|display| self.wiring(display.bus).is_some());
+        let displays = DISPLAYS.into_iter().filter(|display| self.takes(display));
         let programs = displays.map(|display| image(self.package, Some(display)));
         programs.chain(self.programs.iter().map(|program| image(program, Some(DISPLAYS[0])))).collect()
+    }
+
+    /// The display that it has, or takes if nobody chooses one.
+    pub fn first_display(&'static self) -> Option<Shown> {
+        DISPLAYS.into_iter().find(|display| self.takes(display))
+    }
+
+    /// Whether it takes a display: the board has its bus, and no display of its own, or this is its own.
+    pub fn takes(&self, display: &Shown) -> bool {
+        let is_offered = self.displays.is_empty() || self.displays.contains(&display.name);
+        // The micro:bit's LEDs show a part of a picture of 128x64 pixels.
+        let is_too_small = self.package == "microbit-v2" && display.feature.starts_with("ssd1306-");
+        is_offered && !is_too_small && self.wiring(display.bus).is_some()
+    }
+
+    /// The feature of its pins, or nothing.
+    fn pins_feature(&self) -> String {
+        self.pins.map_or(String::new(), |pins| format!("pins-{pins}"))
     }
 
     /// The wires of a display's bus, if the board has it.
@@ -115,22 +137,29 @@ impl Image {
     fn stem(&self) -> String {
         let name = if self.program == self.board.package { String::new() } else { format!("-{}", self.program) };
         let display = self.display.map_or(String::new(), |display| format!("-{}", display.name));
-        format!("pantin-{}{name}{display}", self.board.package)
+        format!("pantin-{}{name}{display}", self.board.name)
     }
 
     /// Builds it with these clips.
     pub fn build(&self, clips: &[PathBuf]) -> Result<File> {
         let name = format!("{}.{}", self.stem(), self.board.format.extension());
         let features = if self.program == self.board.package { self.board.features } else { "" };
-        let features = [features, self.display.map_or("", |display| display.feature)].join(",");
-        let Board { package, target, .. } = *self.board;
-        let clips: Vec<_> = clips.iter().map(std::path::PathBuf::as_path).collect();
-        let firmware = Firmware::released(&features, package, self.program, target, &clips).with_context(|| name.clone())?;
+        let firmware = self.firmware(features, clips).with_context(|| name.clone())?;
+        let package = self.board.package;
         let flash = crate::image::loaded(firmware.elf())?;
         let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
         chip::check(package, &elf)?;
         let bytes = written(&elf, self.board.format).with_context(|| name.clone())?;
         Ok(File { image: *self, name, bytes, flash })
+    }
+
+    /// Builds its program with these features beside those of display and pins.
+    pub fn firmware(&self, features: &str, clips: &[PathBuf]) -> Result<Firmware> {
+        let pins = self.board.pins_feature();
+        let features = [features, self.display.map_or("", |display| display.feature), &pins].join(",");
+        let Board { package, target, rotation, .. } = *self.board;
+        let clips: Vec<_> = clips.iter().map(PathBuf::as_path).collect();
+        Firmware::released(&features, package, self.program, target, &clips, rotation)
     }
 }
 
@@ -151,6 +180,7 @@ fn written(elf: &[u8], format: Format) -> Result<Vec<u8>> {
     match format {
         Format::Uf2 => uf2::of_elf(elf),
         Format::Uf2Rp2350 => uf2::of_rp2350_elf(elf),
+        Format::Uf2Nrf52840 => uf2::of_nrf52840_elf(elf),
         Format::Hex => hex(elf),
         Format::Bin(start) => bin(elf, start),
         Format::Elf => Ok(elf.to_vec()),

@@ -1,10 +1,10 @@
 //! The page of the folder: which file is for which board and display, its wires, and how it gets onto the board.
 
-use super::{BOARDS, Board, Bus, File, Wiring};
+use super::{BOARDS, Board, Bus, File, SETS, Wiring};
 
 /// The page's text, in HTML.
 pub fn page(files: &[File]) -> String {
-    let boards: String = BOARDS.iter().map(|board| section(board, files)).collect();
+    let boards: String = BOARDS.iter().chain(&SETS).map(|board| section(board, files)).collect();
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Pantin: images for boards</title>\n<style>\nbody {{ font: 16px/1.5 sans-serif; max-width: 60em; margin: 1em auto; padding: 0 1em }}\n\
@@ -22,7 +22,7 @@ pub fn page(files: &[File]) -> String {
 }
 
 fn section(board: &Board, files: &[File]) -> String {
-    let own: Vec<&File> = files.iter().filter(|file| file.image.board.package == board.package).collect();
+    let own: Vec<&File> = files.iter().filter(|file| file.image.board.name == board.name).collect();
     let Some(first) = own.first() else { return String::new() };
     let flashing = board.flashing.replace("FILE", &first.name);
     let rows: String = own.iter().map(|file| row(file)).collect();
@@ -30,7 +30,7 @@ fn section(board: &Board, files: &[File]) -> String {
     format!(
         "<h2 id=\"{}\">{}</h2>\n<p>{flashing}</p>\n<table>\n<tr><th>file</th><th>display</th><th>bytes of the file</th><th>bytes of flash</th>\
          <th>SHA-256</th></tr>\n{rows}</table>\n{wires}",
-        board.package,
+        board.name,
         escaped(board.title),
     )
 }
@@ -48,7 +48,7 @@ fn row(file: &File) -> String {
 
 fn wires(board: &Board, wiring: &Wiring) -> String {
     let supply = [["VCC", board.supply[0]], ["GND", board.supply[1]]];
-    let supply = if wiring.bus.is_some() { &supply[..] } else { &[] };
+    let supply = if wiring.bus.is_some() && !board.supply[0].is_empty() { &supply[..] } else { &[] };
     let rows: String =
         supply.iter().chain(wiring.wires).map(|[part, pin]| format!("<tr><td>{part}</td><td>{pin}</td></tr>\n")).collect();
     let bus = match wiring.bus {

@@ -27,8 +27,16 @@ pub struct Wiring {
 /// A board that images are made for.
 #[derive(Debug)]
 pub struct Board {
+    /// What commands and files call it.
+    pub name: &'static str,
     /// Its package, and the name of its program.
     pub package: &'static str,
+    /// Its set of pins, if it is another than the package's first: the feature `pins-...` without that prefix.
+    pub pins: Option<&'static str>,
+    /// The only displays that it takes, by name; none if it takes all of its buses.
+    pub displays: &'static [&'static str],
+    /// How far the picture is turned on these displays, in degrees.
+    pub rotation: u16,
     /// Its folder under `firmware/boards`.
     pub folder: &'static str,
     /// Its name.
@@ -53,9 +61,9 @@ impl Board {
     /// How the board's crate names a pin.
     pub fn spelled(&self, pin: &str) -> String {
         match (self.package, pin) {
-            ("pico" | "pico2", _) => pin.replace("GP", "gpio"),
+            ("pico" | "pico2", _) => pin.replace("GP", "$pins.gpio"),
             ("blackpill" | "nucleo-f411re", _) => pin.replace("PA", "a.pa").replace("PB", "b.pb").replace("PC", "c.pc"),
-            ("nrf52840-dk", _) => pin.replace("P0.", "p0.p0_"),
+            ("nrf52840-dk", _) => pin.replace("P0.", "$p0.p0_").replace("P1.", "$p1.p1_"),
             // Schematic of the micro:bit v2.
             ("microbit-v2", "P19") => "p0.p0_26".into(),
             ("microbit-v2", "P20") => "p1.p1_00".into(),
@@ -65,52 +73,54 @@ impl Board {
 }
 
 const I2C_PART: &str = "SSD1306 or SH1106";
-const SPI_PART: &str = "colour display (BL, the light, goes to 3.3 V; a module without CS works too)";
+const SPI_PART: &str = "colour display (BL, the light, goes to 3.3 V; a module without CS works too, with RES at its pin)";
 const BUTTONS: &str = "buttons to GND (optional)";
 const SERIAL: &str = "serial adapter, 3.3 V, 115200 baud (optional)";
 
 /// The Pico 2 has the Pico's pins, and shares its module.
-const PICO_SOURCE: &str = "../pico/src/board.rs";
+const PICO_SOURCE: &str = "../pico/src/pins.rs";
 const PICO_SUPPLY: [&str; 2] = ["3V3 (OUT)", "GND"];
-const PICO_I2C: Wiring = Wiring {
-    part: I2C_PART,
-    bus: Some(Bus::I2c),
-    wires: &[["SDA", "GP4"], ["SCL", "GP5"]],
-    source: [PICO_SOURCE, "let (sda, scl) = (pins.{}.into_pull_up_input(), pins.{}.into_pull_up_input());"],
-};
+/// What stands in a table of pins of the RP2040 and the RP2350.
+const RP_I2C: &str = "// SDA, SCL, and their bus. ({}, {}, $parts.I2C";
+const RP_SERIAL: &str = "// TX and RX. ({}, {})";
+const RP_BUTTONS: &str = "// Up, down, left, right and select. ({}, {}, {}, {}, {})";
+const PICO_I2C: Wiring =
+    Wiring { part: I2C_PART, bus: Some(Bus::I2c), wires: &[["SDA", "GP4"], ["SCL", "GP5"]], source: [PICO_SOURCE, RP_I2C] };
 const PICO_SPI: Wiring = Wiring {
     part: SPI_PART,
     bus: Some(Bus::Spi),
     wires: &[["CS", "GP17"], ["SCL (SCK)", "GP18"], ["SDA (MOSI)", "GP19"], ["DC", "GP20"], ["RES", "GP21"]],
-    source: [PICO_SOURCE, "parts.SPI0, (pins.{}, pins.{}, pins.{}, pins.{}, pins.{}), &mut resets"],
+    source: [PICO_SOURCE, "reset of a display over SPI. ({}, {}, {}, {}, {})"],
 };
 const PICO_BUTTONS: Wiring = Wiring {
     part: BUTTONS,
     bus: None,
     wires: &[["up", "GP10"], ["down", "GP11"], ["left", "GP12"], ["right", "GP13"], ["select", "GP14"]],
-    source: [
-        PICO_SOURCE,
-        "five_buttons([ pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
-         pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
-         pins.{}.into_pull_up_input().into_dyn_pin(), ])",
-    ],
+    source: [PICO_SOURCE, RP_BUTTONS],
 };
-const PICO_SERIAL: Wiring = Wiring {
-    part: SERIAL,
-    bus: None,
-    wires: &[["RX", "GP0"], ["TX", "GP1"]],
-    source: [PICO_SOURCE, "let (tx, rx) = (pins.{}.into_function(), pins.{}.into_function()"],
-};
+const PICO_SERIAL: Wiring =
+    Wiring { part: SERIAL, bus: None, wires: &[["RX", "GP0"], ["TX", "GP1"]], source: [PICO_SOURCE, RP_SERIAL] };
 
 const ESP_I2C: [&str; 2] = ["src/pins.rs", "// SDA and SCL. ($parts.{}, $parts.{})"];
 const ESP_SERIAL: [&str; 2] = ["src/pins.rs", "// TX and RX. ($parts.{}, $parts.{})"];
 const ESP_BUTTONS: [&str; 2] =
     ["src/pins.rs", "which is the board's own, BOOT. ($parts.{}, $parts.{}, $parts.{}, $parts.{}, $parts.{})"];
 
+const ESP32_C3_BUTTONS: Wiring = Wiring {
+    part: BUTTONS,
+    bus: None,
+    wires: &[["up", "GPIO0"], ["down", "GPIO1"], ["left", "GPIO3"], ["right", "GPIO4"], ["select, on the board: BOOT", "GPIO9"]],
+    source: ESP_BUTTONS,
+};
+
 /// The boards that one can buy, and the Game Boy Advance.
 pub const BOARDS: [Board; 9] = [
     Board {
+        name: "pico",
         package: "pico",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "pico",
         title: "Raspberry Pi Pico",
         target: "thumbv6m-none-eabi",
@@ -132,14 +142,18 @@ pub const BOARDS: [Board; 9] = [
                 wires: &[["left thigh", "GP6"], ["right thigh", "GP7"], ["left arm", "GP8"], ["right arm", "GP9"]],
                 source: [
                     "src/bin/servo.rs",
-                    "legs.channel_a.output_to(pins.{}); legs.channel_b.output_to(pins.{}); \
-                     arms.channel_a.output_to(pins.{}); arms.channel_b.output_to(pins.{});",
+                    "legs.channel_a.output_to({}); legs.channel_b.output_to({}); \
+                     arms.channel_a.output_to({}); arms.channel_b.output_to({});",
                 ],
             },
         ],
     },
     Board {
+        name: "blackpill",
         package: "blackpill",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "blackpill",
         title: "STM32F411 \"Black Pill\"",
         target: "thumbv7em-none-eabihf",
@@ -187,7 +201,11 @@ pub const BOARDS: [Board; 9] = [
         ],
     },
     Board {
+        name: "microbit-v2",
         package: "microbit-v2",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "microbit-v2",
         title: "BBC micro:bit v2",
         target: "thumbv7em-none-eabihf",
@@ -205,7 +223,11 @@ pub const BOARDS: [Board; 9] = [
         }],
     },
     Board {
+        name: "esp32-c3",
         package: "esp32-c3",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "esp32c3",
         title: "ESP32-C3",
         target: "riscv32imc-unknown-none-elf",
@@ -217,23 +239,16 @@ pub const BOARDS: [Board; 9] = [
         supply: ["3V3", "GND"],
         wirings: &[
             Wiring { part: I2C_PART, bus: Some(Bus::I2c), wires: &[["SDA", "GPIO5"], ["SCL", "GPIO6"]], source: ESP_I2C },
-            Wiring {
-                part: BUTTONS,
-                bus: None,
-                wires: &[
-                    ["up", "GPIO0"],
-                    ["down", "GPIO1"],
-                    ["left", "GPIO3"],
-                    ["right", "GPIO4"],
-                    ["select, on the board: BOOT", "GPIO9"],
-                ],
-                source: ESP_BUTTONS,
-            },
+            ESP32_C3_BUTTONS,
             Wiring { part: SERIAL, bus: None, wires: &[["RX", "GPIO21"], ["TX", "GPIO20"]], source: ESP_SERIAL },
         ],
     },
     Board {
+        name: "pico2",
         package: "pico2",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "pico2",
         title: "Raspberry Pi Pico 2",
         target: "thumbv8m.main-none-eabihf",
@@ -246,7 +261,11 @@ pub const BOARDS: [Board; 9] = [
         wirings: &[PICO_I2C, PICO_SPI, PICO_BUTTONS, PICO_SERIAL],
     },
     Board {
+        name: "nucleo-f411re",
         package: "nucleo-f411re",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "nucleo-f411re",
         title: "Nucleo-F411RE",
         target: "thumbv7em-none-eabihf",
@@ -287,7 +306,11 @@ pub const BOARDS: [Board; 9] = [
         ],
     },
     Board {
+        name: "nrf52840-dk",
         package: "nrf52840-dk",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "nrf52840-dk",
         title: "nRF52840 DK",
         target: "thumbv7em-none-eabihf",
@@ -300,11 +323,15 @@ pub const BOARDS: [Board; 9] = [
             part: I2C_PART,
             bus: Some(Bus::I2c),
             wires: &[["SCL", "P0.27"], ["SDA", "P0.26"]],
-            source: ["src/board.rs", "let (scl, sda) = ({}.into_floating_input().degrade(), {}.into_floating_input().degrade())"],
+            source: ["src/pins.rs", "// SCL and SDA. ({}, {})"],
         }],
     },
     Board {
+        name: "esp32-c6",
         package: "esp32-c6",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "esp32c6",
         title: "ESP32-C6",
         target: "riscv32imac-unknown-none-elf",
@@ -332,7 +359,11 @@ pub const BOARDS: [Board; 9] = [
         ],
     },
     Board {
+        name: "gba",
         package: "gba",
+        pins: None,
+        displays: &[],
+        rotation: 0,
         folder: "gba",
         title: "Game Boy Advance",
         target: crate::gba::TARGET,
@@ -343,6 +374,184 @@ pub const BOARDS: [Board; 9] = [
                    <code>gbafix FILE</code> adds. It has all our motions.",
         supply: ["", ""],
         wirings: &[],
+    },
+];
+
+const DISPLAY_PACK_SOURCE: &str = "../pico/src/pins/display_pack.rs";
+const DISPLAY_PACK: &[Wiring] = &[
+    Wiring {
+        part: "on the pack: nothing is wired",
+        bus: Some(Bus::Spi),
+        wires: &[["CS", "GP17"], ["SCK", "GP18"], ["MOSI", "GP19"], ["DC", "GP16"], ["light", "GP20"]],
+        source: [DISPLAY_PACK_SOURCE, "after the pulse of a reset it stays on. ({}, {}, {}, {}, {})"],
+    },
+    Wiring {
+        part: "buttons of the pack",
+        bus: None,
+        wires: &[["up, X", "GP14"], ["down, Y", "GP15"], ["left (free)", "GP10"], ["right, B", "GP13"], ["select, A", "GP12"]],
+        source: [DISPLAY_PACK_SOURCE, "Left is a free pin. ({}, {}, {}, {}, {})"],
+    },
+];
+
+/// Other boards with the same chips, whose pins are tables beside those of the boards above.
+pub const SETS: [Board; 7] = [
+    Board {
+        name: "pico-display-pack",
+        pins: Some("display-pack"),
+        displays: &["st7789-135x240"],
+        rotation: 90,
+        title: "Raspberry Pi Pico with Pimoroni's Pico Display Pack",
+        programs: &[],
+        supply: ["", ""],
+        wirings: DISPLAY_PACK,
+        ..BOARDS[0]
+    },
+    Board {
+        name: "pico2-display-pack",
+        pins: Some("display-pack"),
+        displays: &["st7789-135x240"],
+        rotation: 90,
+        title: "Raspberry Pi Pico 2 with Pimoroni's Pico Display Pack",
+        supply: ["", ""],
+        wirings: DISPLAY_PACK,
+        ..BOARDS[4]
+    },
+    Board {
+        name: "feather-rp2040",
+        pins: Some("feather"),
+        title: "Adafruit Feather RP2040 with a Qwiic OLED",
+        programs: &[],
+        supply: ["3V", "GND"],
+        wirings: &[
+            Wiring {
+                part: "SSD1306 or SH1106, on the STEMMA QT (Qwiic) connector",
+                bus: Some(Bus::I2c),
+                wires: &[["SDA", "GP2"], ["SCL", "GP3"]],
+                source: ["src/pins/feather.rs", RP_I2C],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up, D24", "GP24"],
+                    ["down, D25", "GP25"],
+                    ["left, D5", "GP7"],
+                    ["right, D6", "GP8"],
+                    ["select, D9", "GP9"],
+                ],
+                source: ["src/pins/feather.rs", RP_BUTTONS],
+            },
+            Wiring {
+                part: SERIAL,
+                bus: None,
+                wires: &[["RX", "GP0"], ["TX", "GP1"]],
+                source: ["src/pins/feather.rs", RP_SERIAL],
+            },
+        ],
+        ..BOARDS[0]
+    },
+    Board {
+        name: "xiao-rp2040",
+        pins: Some("xiao"),
+        title: "Seeed XIAO RP2040",
+        programs: &[],
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SDA, D4", "GP6"], ["SCL, D5", "GP7"]],
+                source: ["src/pins/xiao.rs", RP_I2C],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up, D1", "GP27"],
+                    ["down, D2", "GP28"],
+                    ["left, D3", "GP29"],
+                    ["right, D9", "GP4"],
+                    ["select, D0", "GP26"],
+                ],
+                source: ["src/pins/xiao.rs", RP_BUTTONS],
+            },
+            Wiring { part: SERIAL, bus: None, wires: &[["RX", "GP0"], ["TX", "GP1"]], source: ["src/pins/xiao.rs", RP_SERIAL] },
+        ],
+        ..BOARDS[0]
+    },
+    Board {
+        name: "esp32-c3-oled",
+        displays: &["ssd1306-72x40"],
+        title: "ESP32-C3 with an OLED of 72x40 pixels (0.42\")",
+        supply: ["", ""],
+        wirings: &[
+            Wiring {
+                part: "on the board: nothing is wired",
+                bus: Some(Bus::I2c),
+                wires: &[["SDA", "GPIO5"], ["SCL", "GPIO6"]],
+                source: ESP_I2C,
+            },
+            ESP32_C3_BUTTONS,
+        ],
+        ..BOARDS[3]
+    },
+    Board {
+        name: "xiao-esp32c3",
+        pins: Some("xiao"),
+        title: "Seeed XIAO ESP32C3",
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SDA, D4", "GPIO6"], ["SCL, D5", "GPIO7"]],
+                source: ["src/pins.rs", "// SDA and SCL: D4 and D5. ($parts.{}, $parts.{})"],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up, D1", "GPIO3"],
+                    ["down, D2", "GPIO4"],
+                    ["left, D3", "GPIO5"],
+                    ["right, D10", "GPIO10"],
+                    ["select, on the board: BOOT", "GPIO9"],
+                ],
+                source: [
+                    "src/pins.rs",
+                    "Select is the board's own, BOOT. ($parts.{}, $parts.{}, $parts.{}, $parts.{}, $parts.{})",
+                ],
+            },
+        ],
+        ..BOARDS[3]
+    },
+    Board {
+        name: "xiao-nrf52840",
+        pins: Some("xiao"),
+        format: Format::Uf2Nrf52840,
+        title: "Seeed XIAO nRF52840",
+        flashing: "Press the reset button twice, and drag <code>FILE</code> onto the drive XIAO-SENSE or XIAO-BOOT.",
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SCL, D5", "P0.05"], ["SDA, D4", "P0.04"]],
+                source: ["src/pins/xiao.rs", "// SCL and SDA: D5 and D4. ({}, {})"],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[["1, D0", "P0.02"], ["2, D1", "P0.03"]],
+                source: ["src/pins/xiao.rs", "// Buttons: D0 and D1. ({}, {})"],
+            },
+            Wiring {
+                part: SERIAL,
+                bus: None,
+                wires: &[["RX, D6", "P1.11"], ["TX, D7", "P1.12"]],
+                source: ["src/pins/xiao.rs", "// TX and RX: D6 and D7. ({}, {})"],
+            },
+        ],
+        ..BOARDS[6]
     },
 ];
 
@@ -365,14 +574,14 @@ mod tests {
 
     #[test]
     fn the_boards_crates_set_up_the_pins_of_the_page() {
-        for board in &BOARDS {
+        for board in BOARDS.iter().chain(&SETS) {
             for wiring in board.wirings {
                 let [file, code] = wiring.source;
                 let pins = wiring.wires.iter().map(|[_, pin]| board.spelled(pin));
                 let code = pins.fold(code.to_owned(), |code, pin| code.replacen("{}", &pin, 1));
-                assert!(!code.contains("{}"), "{}: {}: a pin is missing", board.package, wiring.part);
+                assert!(!code.contains("{}"), "{}: {}: a pin is missing", board.name, wiring.part);
                 let source = read(board, file).split_whitespace().collect::<Vec<_>>().join(" ");
-                assert!(source.contains(&code), "{}: {file} does not contain `{code}`", board.package);
+                assert!(source.contains(&code), "{}: {file} does not contain `{code}`", board.name);
             }
         }
         // What the five pins of a colour display are.
@@ -383,19 +592,19 @@ mod tests {
 
     #[test]
     fn the_boards_readmes_have_the_pins_of_the_page() {
-        for board in &BOARDS {
+        for board in BOARDS.iter().chain(&SETS) {
             let text = read(board, "README.md");
             let rows: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
             let has = |pin: &str| rows.iter().any(|row| has_word(row, pin));
             for wiring in board.wirings {
                 for [part, pin] in wiring.wires {
-                    assert!(has(pin), "{}: {part} {pin}", board.package);
+                    assert!(has(pin), "{}: {part} {pin}", board.name);
                 }
             }
             assert!(
-                board.wirings.is_empty() || rows.iter().any(|row| row.contains(&board.supply.join(", "))),
+                board.supply[0].is_empty() || rows.iter().any(|row| row.contains(&board.supply.join(", "))),
                 "{}",
-                board.package
+                board.name
             );
         }
     }

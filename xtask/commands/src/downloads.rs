@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use harness::download::{self, BOARDS};
+use harness::download::{self, BOARDS, SETS};
 use harness::{clips, paths};
 use pantin_tools::output::write_whole;
 
@@ -30,8 +30,9 @@ pub struct Images {
 impl Images {
     /// Builds the images and writes the folder.
     pub fn run(self) -> Result<()> {
-        if let Some(name) = self.board.iter().find(|name| BOARDS.iter().all(|board| board.package != **name)) {
-            let there = BOARDS.each_ref().map(|board| board.package).join(", ");
+        let all = || BOARDS.iter().chain(&SETS);
+        if let Some(name) = self.board.iter().find(|name| all().all(|board| board.name != **name)) {
+            let there = all().map(|board| board.name).collect::<Vec<_>>().join(", ");
             bail!("there are no images for {name}, but for {there}");
         }
         let out = if self.out.is_absolute() { self.out } else { paths::root().join(self.out) };
@@ -39,7 +40,7 @@ impl Images {
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
         let clips = clips::own(folder.path(), clips::Drawn::Lines)?;
         let mut files = vec![];
-        for board in BOARDS.iter().filter(|board| self.board.is_empty() || self.board.iter().any(|name| name == board.package)) {
+        for board in all().filter(|board| self.board.is_empty() || self.board.iter().any(|name| name == board.name)) {
             for image in board.images() {
                 let file = image.build(&clips)?;
                 write_whole(&out.join(&file.name), &file.bytes)?;

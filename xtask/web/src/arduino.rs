@@ -12,7 +12,7 @@ use xtask::paths;
 const CLIPS: [(&str, &[&str]); 4] = [
     ("walk.ptn", &["OledAdafruit", "OledU8g2", "TftESPI", "Servos", "SolidGC9A01"]),
     ("face/hello.ptn", &["Face"]),
-    ("character.ptb", &["SteerTFT"]),
+    ("character.ptb", &["SteerTFT", "SteerM5"]),
     ("looks/cat.look", &["SolidGC9A01"]),
 ];
 

@@ -4,6 +4,7 @@
 class M5GFX {
   public:
     void drawFastHLine(int32_t x, int32_t y, int32_t w, uint32_t color);
+    template <typename T> void pushImage(int32_t x, int32_t y, int32_t w, int32_t h, const T *data);
 };
 class M5Canvas : public M5GFX {
   public:
@@ -15,6 +16,7 @@ class M5Canvas : public M5GFX {
 };
 struct Button_Class {
     bool wasPressed(void) const;
+    bool isPressed(void) const;
 };
 struct Mic_Class {
     bool begin(void);
@@ -23,7 +25,7 @@ struct Mic_Class {
 struct M5Unified {
     M5GFX Display;
     Mic_Class Mic;
-    Button_Class BtnA;
+    Button_Class BtnA, BtnB, BtnC;
     void begin(void);
     void update(void);
 };

@@ -4,9 +4,9 @@
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
-use board_drivers::Heartbeat;
 #[cfg(not(feature = "spi"))]
-use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
+use board_common::{OledPicture as Picture, OledPicture as PanicPicture, oled};
+use board_drivers::Heartbeat;
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 #[cfg(feature = "spi")]
@@ -60,10 +60,7 @@ pub fn new(
     let mut serial = NbSerial(serial);
     report_restart(&mut serial, by_watchdog);
     #[cfg(not(feature = "spi"))]
-    let display = {
-        let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-        new(crate::i2c::new(parts.I2C1, b.pb6, b.pb7, &mut clocks, &mut serial))
-    };
+    let display = oled(crate::i2c::new(parts.I2C1, b.pb6, b.pb7, &mut clocks, &mut serial));
     #[cfg(feature = "spi")]
     let display = crate::spi_display::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);
     // The board's own LED.

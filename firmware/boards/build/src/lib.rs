@@ -45,7 +45,8 @@ const DISPLAYS: [(&str, &str, [usize; 2]); 6] = [
 pub fn display() {
     println!("cargo::rerun-if-env-changed=PANTIN_ROTATION");
     let is_on = |name: &&str| feature(name);
-    let chosen: Vec<&str> = DISPLAYS.iter().map(|(name, ..)| *name).chain(["sh1106"]).filter(is_on).collect();
+    let chosen: Vec<&str> =
+        DISPLAYS.iter().map(|(name, ..)| *name).chain(["sh1106", "ssd1306-128x32", "ssd1306-72x40"]).filter(is_on).collect();
     if let [first, second, ..] = *chosen {
         println!("cargo::error=the features {first} and {second} exclude each other: choose one display");
     }

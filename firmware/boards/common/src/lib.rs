@@ -16,6 +16,8 @@ mod flash;
 mod look {
     include!(concat!(env!("OUT_DIR"), "/look.rs"));
 }
+#[cfg(not(feature = "emulated"))]
+mod oled;
 // Panics of emulated boards end the emulator; one of these boards has no atomic memory access.
 #[cfg(not(feature = "emulated"))]
 mod panic_screen;
@@ -47,6 +49,8 @@ pub use exit::{Code, exit};
 pub use flash::{Flash, NoFlash};
 #[cfg(feature = "solid")]
 pub use look::{LOOK, OTHER_LOOK};
+#[cfg(not(feature = "emulated"))]
+pub use oled::{OledPicture, oled};
 #[cfg(not(feature = "emulated"))]
 pub use panic_screen::{PanicBoard, panic_screen, refusal_screen};
 pub use register::Register;

@@ -169,7 +169,8 @@ pub struct ColorPanel<S, D> {
 impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> ColorPanel<S, D> {
     /// Sets the display up, which takes about 500 ms, and darkens it. The bus has at most 62.5 MHz (an ILI9341 is specified for 10 MHz, and works
     /// at 31 MHz) and SPI mode 3: modules without a chip select need it, and those with one take it too. `data` is the data/command pin, `reset` the
-    /// pin of a wire to the panel's RES, which may also be absent: the panel is reset by a command too. Returns `None` if bus or pin fails.
+    /// pin of a wire to the panel's RES. Only a module with a chip select may lack that wire, as it is reset by a command too: one without counts the clock's
+    /// first rise as a bit, and takes the command for another one. Returns `None` if bus or pin fails.
     pub fn new<M: Model<ColorFormat = Rgb565>>(
         module: Module<M>,
         bus: S,

@@ -17,4 +17,4 @@ pub use color_panels::ColorPanel;
 pub use display::Display;
 pub use heartbeat::Heartbeat;
 pub use servo::Servo;
-pub use ssd1306::{Mono128x64, Ssd1306};
+pub use ssd1306::{Mono72x40, Mono128x32, Mono128x64, Ssd1306};

@@ -1,14 +1,19 @@
-//! The SSD1306 and the SH1106: monochrome displays of 128x64 pixels, over I2C.
+//! The SSD1306 and the SH1106: monochrome displays of 128x64 pixels over I2C, and modules with an SSD1306 of 128x32 and 72x40 pixels.
 //!
 //! The crate `ssd1306` is not used: over I2C it copies what it sends into transfers of 16 bytes, each with an address and a control byte of
 //! its own. This driver sends each page that changed in one transfer, straight from the framebuffer: 8 bytes and the page's columns.
 
 use crate::Display;
+use core::marker::PhantomData;
 use embedded_hal::i2c::{I2c, Operation};
-use pantin_figure::surface::{BAND, Framebuffer, Layout, MonoPages, Surface};
+use pantin_figure::surface::{BAND, Framebuffer, MonoPages, Surface};
 
-/// The layout of the display's memory.
+/// The layout of the memory of most modules.
 pub type Mono128x64 = MonoPages<128, 64, 1024>;
+/// That of modules half as high: 0.91".
+pub type Mono128x32 = MonoPages<128, 32, 512>;
+/// That of the smallest modules: 0.42", as on boards with an ESP32-C3.
+pub type Mono72x40 = MonoPages<72, 40, 360>;
 
 /// The I2C addresses: the first is that of most modules, a solder bridge changes it to the second.
 pub const ADDRESSES: [u8; 2] = [0x3c, 0x3d];
@@ -28,7 +33,30 @@ const SET_UP: [u8; 26] = [
     0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
     0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
 ];
-/// The same for an SH1106, which has another charge pump, and no modes of addressing.
+/// The same for 32 rows, which are wired to the controller one after the other.
+const SET_UP_128X32: [u8; 26] = [
+    COMMANDS, 0xae, // display off
+    0xd5, 0x80, 0xa8, 31, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
+    0x8d, 0x14, // charge pump on
+    0x20, 2, // page addressing
+    0xa1, 0xc8, 0xda, 0x02, // columns and rows reversed, row pins
+    0x81, 0x8f, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
+    0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
+];
+/// The same for 40 rows of a module without a resistor for the current, which the controller's own one (0xad) replaces.
+const SET_UP_72X40: [u8; 28] = [
+    COMMANDS, 0xae, // display off
+    0xd5, 0x80, 0xa8, 39, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
+    0x8d, 0x14, // charge pump on
+    0xad, 0x30, // internal current reference
+    0x20, 2, // page addressing
+    0xa1, 0xc8, 0xda, 0x12, // columns and rows reversed, row pins
+    0x81, 0xcf, 0xd9, 0x22, 0xdb, 0x20, // contrast, precharge, deselect level
+    0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
+];
+/// The glass of 72 columns shows those in the middle.
+const FIRST_COLUMN_72X40: u8 = 28;
+/// The same as [`SET_UP`] for an SH1106, which has another charge pump, and no modes of addressing.
 const SET_UP_SH1106: [u8; 23] = [
     COMMANDS, 0xae, // display off
     0xd5, 0x80, 0xa8, 63, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
@@ -41,9 +69,9 @@ const SET_UP_SH1106: [u8; 23] = [
 const FIRST_COLUMN_SH1106: u8 = 2;
 const DISPLAY_ON: [u8; 2] = [COMMANDS, 0xaf];
 
-/// The display.
+/// The display, of the layout `L`.
 #[derive(Debug)]
-pub struct Ssd1306<B> {
+pub struct Ssd1306<B, L = Mono128x64> {
     bus: B,
     /// The address that the display answers, or is tried next.
     address: u8,
@@ -52,17 +80,38 @@ pub struct Ssd1306<B> {
     first_column: u8,
     /// The display is set up and shows what was last sent.
     ready: bool,
+    layout: PhantomData<fn() -> L>,
 }
 
 impl<B: I2c> Ssd1306<B> {
     /// Makes a driver for an SSD1306 on a bus of at most 400 kHz. It has one of [`ADDRESSES`]. Nothing is sent before the first picture.
     pub fn new(bus: B) -> Self {
-        Ssd1306 { bus, address: ADDRESSES[0], set_up: &SET_UP, first_column: 0, ready: false }
+        Ssd1306::of_glass(bus, &SET_UP, 0)
     }
 
     /// Makes a driver for an SH1106.
     pub fn sh1106(bus: B) -> Self {
-        Ssd1306 { set_up: &SET_UP_SH1106, first_column: FIRST_COLUMN_SH1106, ..Ssd1306::new(bus) }
+        Ssd1306::of_glass(bus, &SET_UP_SH1106, FIRST_COLUMN_SH1106)
+    }
+}
+
+impl<B: I2c> Ssd1306<B, Mono128x32> {
+    /// Makes a driver for a module of 128x32 pixels.
+    pub fn of_128x32(bus: B) -> Self {
+        Ssd1306::of_glass(bus, &SET_UP_128X32, 0)
+    }
+}
+
+impl<B: I2c> Ssd1306<B, Mono72x40> {
+    /// Makes a driver for a module of 72x40 pixels.
+    pub fn of_72x40(bus: B) -> Self {
+        Ssd1306::of_glass(bus, &SET_UP_72X40, FIRST_COLUMN_72X40)
+    }
+}
+
+impl<B: I2c, const W: usize, const H: usize, const BYTES: usize> Ssd1306<B, MonoPages<W, H, BYTES>> {
+    fn of_glass(bus: B, set_up: &'static [u8], first_column: u8) -> Self {
+        Ssd1306 { bus, address: ADDRESSES[0], set_up, first_column, ready: false, layout: PhantomData }
     }
 
     /// Sends what changed since the last call. After an error it sets the display up again and sends the whole picture, so that a display
@@ -70,11 +119,11 @@ impl<B: I2c> Ssd1306<B> {
     ///
     /// # Errors
     /// The bus failed, or the display did not answer.
-    pub fn show(&mut self, frame: &mut Framebuffer<Mono128x64>) -> Result<(), B::Error> {
+    pub fn show(&mut self, frame: &mut Framebuffer<MonoPages<W, H, BYTES>>) -> Result<(), B::Error> {
         let sent = self.send(frame);
         self.ready = sent.is_ok();
         if !self.ready {
-            frame.mark([0, 0], [Mono128x64::WIDTH as i32 - 1, Mono128x64::HEIGHT as i32 - 1]);
+            frame.mark([0, 0], [W as i32 - 1, H as i32 - 1]);
         }
         sent
     }
@@ -89,7 +138,7 @@ impl<B: I2c> Ssd1306<B> {
         self.bus.write(self.address, self.set_up)
     }
 
-    fn send(&mut self, frame: &mut Framebuffer<Mono128x64>) -> Result<(), B::Error> {
+    fn send(&mut self, frame: &mut Framebuffer<MonoPages<W, H, BYTES>>) -> Result<(), B::Error> {
         if !self.ready {
             self.find()?;
         }
@@ -108,8 +157,10 @@ impl<B: I2c> Ssd1306<B> {
     }
 }
 
-impl<B: I2c> Display<Mono128x64> for Ssd1306<B> {
-    fn present(&mut self, framebuffer: &mut Framebuffer<Mono128x64>) {
+impl<B: I2c, const W: usize, const H: usize, const BYTES: usize> Display<MonoPages<W, H, BYTES>>
+    for Ssd1306<B, MonoPages<W, H, BYTES>>
+{
+    fn present(&mut self, framebuffer: &mut Framebuffer<MonoPages<W, H, BYTES>>) {
         // The next picture tries again.
         let _ = self.show(framebuffer);
     }
@@ -120,6 +171,7 @@ mod tests {
     use super::*;
     use embedded_graphics::pixelcolor::BinaryColor;
     use embedded_hal::i2c::{ErrorKind, ErrorType};
+    use pantin_figure::surface::Layout;
 
     /// A panel that stores what it was sent, and counts bytes with their addresses.
     struct Panel {

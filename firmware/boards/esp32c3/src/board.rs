@@ -1,8 +1,7 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
-use board_common::{Capacity, PanicBoard, SharedBoard, TickTimer, five_buttons, report_bus, report_restart};
+use board_common::{Capacity, OledPicture, PanicBoard, SharedBoard, TickTimer, five_buttons, oled, report_bus, report_restart};
 use board_drivers::i2c_wires::free_wires;
-use board_drivers::{Mono128x64, Ssd1306};
 use esp_hal::delay::Delay;
 use esp_hal::gpio::{AnyPin, DriveMode, Flex, Input, InputConfig, OutputConfig, Pull};
 use esp_hal::i2c::master::{self, BusTimeout, I2c, SoftwareTimeout};
@@ -38,7 +37,7 @@ fn on_wake() {
 /// Sets the board up.
 pub fn new(
     parts: Peripherals,
-) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
+) -> impl Board<Layout = OledPicture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<OledPicture> {
     // Before all that can hang.
     let mut watchdog = TimerGroup::new(parts.TIMG0).wdt;
     watchdog.set_timeout(MwdtStage::Stage0, WATCHDOG);
@@ -65,7 +64,7 @@ pub fn new(
     report_restart(&mut serial, by_watchdog);
     let mut bus = i2c.with_sda(sda).with_scl(scl);
     report_bus(&mut serial, wires, &mut bus);
-    let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
+    let display = oled(bus);
     let pull_up = InputConfig::default().with_pull(Pull::Up);
     let buttons = five_buttons([
         Input::new(up, pull_up),

@@ -5,6 +5,7 @@ use crate::CPU_HZ;
 use crate::nrf_hal::gpio::{Floating, Input, Level, OpenDrainConfig, Pin, Port};
 use crate::nrf_hal::pac::{P0, P1, TWIM0, p0};
 use crate::nrf_hal::twim::{Frequency, Pins, Twim};
+use board_common::OledPicture;
 use board_drivers::Ssd1306;
 use board_drivers::i2c_wires::{Guarded, Wires, free_wires};
 use embedded_hal::i2c::{ErrorKind, I2c};
@@ -12,13 +13,13 @@ use embedded_hal::i2c::{ErrorKind, I2c};
 /// 5 us.
 const HALF_CLOCK: u32 = CPU_HZ / 200_000;
 
-/// Sets up the SSD1306, or the SH1106, on a bus that is reported first. The pins get pull-ups, which keep the bus idle without a display.
+/// Sets up the display that the features choose, on a bus that is reported first. The pins get pull-ups, which keep the bus idle without a display.
 pub fn new(
     twim: TWIM0,
     scl: Pin<Input<Floating>>,
     sda: Pin<Input<Floating>>,
     report: &mut dyn FnMut(Wires, &mut dyn I2c<Error = ErrorKind>),
-) -> Ssd1306<impl I2c + use<>> {
+) -> Ssd1306<impl I2c + use<>, OledPicture> {
     // A panic may have interrupted a transfer.
     twim.enable.reset();
     let levels = [Wire::of(&scl), Wire::of(&sda)];
@@ -29,8 +30,7 @@ pub fn new(
     let pins = Pins { scl: scl.into_floating_input(), sda: sda.into_floating_input() };
     let mut bus = Guarded::new(Twim::new(twim, pins, Frequency::K400), move || levels.iter().all(Wire::is_high));
     report(wires, &mut bus);
-    let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-    new(bus)
+    board_common::oled(bus)
 }
 
 /// What the HAL does not offer of a pin: its pull-up while it is an output, and its level while the bus has it.

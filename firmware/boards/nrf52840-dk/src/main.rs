@@ -5,6 +5,8 @@
 
 mod board;
 mod panic;
+#[cfg_attr(feature = "pins-xiao", path = "pins/xiao.rs")]
+mod pins;
 
 #[path = "../../microbit-v2/src/debug_port.rs"]
 mod debug_port;

@@ -1,12 +1,12 @@
 //! The panic handler: the display shows the panic for 10 s, then the board resets.
 #![allow(unsafe_code)]
 
+use crate::pins::pins;
 use crate::{CPU_HZ, oled, watchdog};
 use board_common::cortex_m::ClockDelay;
-use board_common::{PanicBoard, panic_screen};
-use board_drivers::Mono128x64;
+use board_common::{OledPicture, PanicBoard, panic_screen};
 use core::panic::PanicInfo;
-use nrf52840_hal::gpio::p0;
+use nrf52840_hal::gpio::{p0, p1};
 use nrf52840_hal::pac::Peripherals;
 
 #[panic_handler]
@@ -15,15 +15,13 @@ fn panic(info: &PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-fn set_up() -> impl PanicBoard<Mono128x64> {
+fn set_up() -> impl PanicBoard<OledPicture> {
     // Safety: the code that had the peripherals does not run any more.
     let parts = unsafe { Peripherals::steal() };
-    let p0 = p0::Parts::new(parts.P0);
-    let display = oled::new(
-        parts.TWIM0,
-        p0.p0_27.into_floating_input().degrade(),
-        p0.p0_26.into_floating_input().degrade(),
-        &mut |_, _| {},
-    );
+    let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
+    let (_, _, (scl, sda), _) = pins!(p0, p1);
+    let _ = &p1.p1_00;
+    let (scl, sda) = (scl.into_floating_input().degrade(), sda.into_floating_input().degrade());
+    let display = oled::new(parts.TWIM0, scl, sda, &mut |_, _| {});
     (display, watchdog::start(parts.WDT))
 }

@@ -5,7 +5,9 @@ use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
 #[cfg(not(feature = "spi"))]
-use board_drivers::{Heartbeat, Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
+use board_common::{OledPicture as Picture, OledPicture as PanicPicture, oled};
+#[cfg(not(feature = "spi"))]
+use board_drivers::Heartbeat;
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 #[cfg(feature = "spi")]
@@ -55,9 +57,8 @@ pub fn new(
     let display = {
         // D15 and D14.
         let bus = crate::i2c::new(parts.I2C1, b.pb8, b.pb9, &mut clocks, &mut serial);
-        let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
         // The board's own LED, whose pin is the clock of displays over SPI.
-        Heartbeat::new(display, a.pa5.into_push_pull_output())
+        Heartbeat::new(oled(bus), a.pa5.into_push_pull_output())
     };
     #[cfg(feature = "spi")]
     let display = crate::spi_display::new(parts.SPI1, (b.pb6, a.pa5, a.pa7, c.pc7, a.pa9), &mut clocks);

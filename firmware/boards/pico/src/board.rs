@@ -1,9 +1,10 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
 use crate::clocks::{self, CPU_HZ};
+use crate::pins::pins;
 use crate::rp_hal::fugit::{ExtU32, RateExtU32};
 #[cfg(not(feature = "spi"))]
-use crate::rp_hal::gpio::InOutPin;
+use crate::rp_hal::gpio::{FunctionI2c, InOutPin};
 use crate::rp_hal::gpio::{Pins, PullUp};
 use crate::rp_hal::pac::Peripherals;
 use crate::rp_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
@@ -11,14 +12,12 @@ use crate::rp_hal::{Sio, Watchdog};
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
-#[cfg(not(feature = "spi"))]
-use board_common::report_bus;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_restart};
+#[cfg(not(feature = "spi"))]
+use board_common::{OledPicture as Picture, OledPicture as PanicPicture, oled, report_bus};
 use board_drivers::Heartbeat;
 #[cfg(not(feature = "spi"))]
 use board_drivers::i2c_wires::free_wires;
-#[cfg(not(feature = "spi"))]
-use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 
@@ -38,9 +37,12 @@ pub fn new(
     watchdog.pause_on_debug(true);
     watchdog.start(WATCHDOG_MS.millis());
     let pins = Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
+    let ((tx, rx), oled_pins, spi_pins, led, (up, down, left, right, select)) = pins!(parts, pins);
+    // One of the two has a display.
+    let _ = (&oled_pins, &spi_pins);
     let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
     // Without an adapter, the pull-up keeps the line idle. A line that is low is one break after the other.
-    let (tx, rx) = (pins.gpio0.into_function(), pins.gpio1.into_function().into_pull_type::<PullUp>());
+    let (tx, rx) = (tx.into_function(), rx.into_function().into_pull_type::<PullUp>());
     let serial = UartPeripheral::new(parts.UART0, (tx, rx), &mut resets);
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "buffered")]
@@ -49,31 +51,28 @@ pub fn new(
     report_restart(&mut serial, by_watchdog);
     #[cfg(not(feature = "spi"))]
     let display = {
-        let (sda, scl) = (pins.gpio4.into_pull_up_input(), pins.gpio5.into_pull_up_input());
-        let (mut sda, mut scl) = (InOutPin::new(sda), InOutPin::new(scl));
+        let (sda, scl, port) = oled_pins;
+        let (mut sda, mut scl) = (InOutPin::new(sda.into_pull_up_input()), InOutPin::new(scl.into_pull_up_input()));
         let wires = free_wires(&mut scl, &mut sda, || cortex_m::asm::delay(CPU_HZ / 200_000));
-        let (sda, scl) = (sda.release().reconfigure(), scl.release().reconfigure());
-        let bus = crate::rp_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
+        let (sda, scl) = (sda.release().into_function::<FunctionI2c>(), scl.release().into_function::<FunctionI2c>());
+        let bus = crate::rp_hal::I2C::new_controller(port, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
         let mut bus = crate::i2c::Bus::new(bus);
         report_bus(&mut serial, wires, &mut bus);
-        let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-        new(bus)
+        oled(bus)
     };
     #[cfg(feature = "spi")]
-    let display =
-        crate::spi_display::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20, pins.gpio21), &mut resets);
+    let display = crate::spi_display::new(parts.SPI0, spi_pins, &mut resets);
     #[cfg(feature = "usb")]
     let serial = crate::usb::start(serial, usb_clock, &mut resets);
     #[cfg(not(feature = "usb"))]
     let _ = usb_clock;
-    // The board's own LED.
-    let display = Heartbeat::new(display, pins.gpio25.into_push_pull_output());
+    let display = Heartbeat::new(display, led.into_push_pull_output());
     let buttons = five_buttons([
-        pins.gpio10.into_pull_up_input().into_dyn_pin(),
-        pins.gpio11.into_pull_up_input().into_dyn_pin(),
-        pins.gpio12.into_pull_up_input().into_dyn_pin(),
-        pins.gpio13.into_pull_up_input().into_dyn_pin(),
-        pins.gpio14.into_pull_up_input().into_dyn_pin(),
+        up.into_pull_up_input().into_dyn_pin(),
+        down.into_pull_up_input().into_dyn_pin(),
+        left.into_pull_up_input().into_dyn_pin(),
+        right.into_pull_up_input().into_dyn_pin(),
+        select.into_pull_up_input().into_dyn_pin(),
     ]);
     let feed = move || {
         watchdog.feed();

@@ -5,23 +5,24 @@
 //! waits forever.
 #![allow(unsafe_code)]
 
-use crate::rp_hal::pac::{I2C0, i2c0::RegisterBlock};
+use crate::pins::I2cPort;
+use crate::rp_hal::pac::i2c0::RegisterBlock;
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
 
 /// How often a register is read until the bus counts as stuck. A byte takes 2,800 clocks of the processor at 400 kHz; a read takes at least 5.
 const MAX_POLLS: u32 = 10_000;
 
-/// Bus 0. `B` is the HAL's, which keeps the pins.
+/// The bus of the pins. `B` is the HAL's, which keeps the pins.
 pub struct Bus<B> {
     registers: &'static RegisterBlock,
     _set_up: B,
 }
 
 impl<B> Bus<B> {
-    /// Takes the bus 0 that the HAL has set up.
+    /// Takes the bus that the HAL has set up.
     pub fn new(set_up: B) -> Self {
         // Safety: the HAL's bus, which owns these registers, is held and not used.
-        Bus { registers: unsafe { &*I2C0::PTR }, _set_up: set_up }
+        Bus { registers: unsafe { &*I2cPort::PTR }, _set_up: set_up }
     }
 
     /// Sends bytes to the display that has been addressed, the last one with a stop. Bytes after an abort are not sent.

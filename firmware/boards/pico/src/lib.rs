@@ -8,6 +8,10 @@ pub mod flash;
 #[cfg(not(feature = "spi"))]
 mod i2c;
 mod panic;
+#[cfg_attr(feature = "pins-display-pack", path = "pins/display_pack.rs")]
+#[cfg_attr(feature = "pins-feather", path = "pins/feather.rs")]
+#[cfg_attr(feature = "pins-xiao", path = "pins/xiao.rs")]
+mod pins;
 mod refusal;
 #[cfg(feature = "spi")]
 mod spi_display;

@@ -1,10 +1,11 @@
-//! A display over SPI: clock on GP18, data on GP19, chip select on GP17, data/command on GP20, reset on GP21.
+//! A display over SPI: clock on GP18, data on GP19, chip select on GP17; data/command and reset as the table of pins says.
 
 use crate::SPI_DIVIDER;
 use crate::clocks::CPU_HZ;
+use crate::pins::{Data, Reset};
 use crate::rp_hal::Spi;
 use crate::rp_hal::fugit::RateExtU32;
-use crate::rp_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19, Gpio20, Gpio21};
+use crate::rp_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19};
 use crate::rp_hal::gpio::{FunctionNull, FunctionSpi, Pin, PullDown};
 use crate::rp_hal::pac::{RESETS, SPI0};
 use crate::rp_hal::spi::Enabled;
@@ -32,7 +33,7 @@ const _: () = assert!(SPI_HZ <= 62_500_000, "the displays' limit");
 /// A pin after reset.
 type Free<I> = Pin<I, FunctionNull, PullDown>;
 /// Chip select, clock, data out, data/command and reset.
-type Pins = (Free<Gpio17>, Free<Gpio18>, Free<Gpio19>, Free<Gpio20>, Free<Gpio21>);
+type Pins = (Free<Gpio17>, Free<Gpio18>, Free<Gpio19>, Free<Data>, Free<Reset>);
 type Lines = (Pin<Gpio19, FunctionSpi, PullDown>, Pin<Gpio18, FunctionSpi, PullDown>);
 
 /// Sets the display up on the pins for chip select, clock, data out, data/command and reset.

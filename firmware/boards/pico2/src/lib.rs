@@ -11,6 +11,9 @@ pub mod clocks;
 mod i2c;
 #[path = "../../pico/src/panic.rs"]
 mod panic;
+#[cfg_attr(not(feature = "pins-display-pack"), path = "../../pico/src/pins.rs")]
+#[cfg_attr(feature = "pins-display-pack", path = "../../pico/src/pins/display_pack.rs")]
+mod pins;
 #[cfg(feature = "spi")]
 #[path = "../../pico/src/spi_display.rs"]
 mod spi_display;

@@ -54,8 +54,13 @@ pub fn uf2(region: &Region, clip: &[u8], info: &ClipInfo) -> Result<Vec<u8>> {
 /// Records of bytes from an address on, which is a multiple of a line's bytes.
 fn data(address: u32, bytes: &[u8], records: &mut Vec<Record>) {
     for (address, line) in (address..).step_by(LINE).zip(bytes.chunks(LINE)) {
-        if address as u16 == 0 || records.is_empty() {
-            records.push(Record::ExtendedLinearAddress((address >> 16) as u16));
+        let high = (address >> 16) as u16;
+        let last = records.iter().rev().find_map(|record| match record {
+            Record::ExtendedLinearAddress(high) => Some(*high),
+            _ => None,
+        });
+        if last != Some(high) {
+            records.push(Record::ExtendedLinearAddress(high));
         }
         records.push(Record::Data { offset: address as u16, value: line.into() });
     }
