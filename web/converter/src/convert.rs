@@ -93,7 +93,9 @@ fn outputs(path: &Path, converted: &Converted, notes: Vec<Note>) -> anyhow::Resu
     let header = c_header(&opened, clip, &stem)?;
     let glb = gltf::write(&Motion { looped: opened.looped(), ..gather(&Expanded::new(&opened))? }).unwrap_or_default();
     let poses = poses(motion, report.length_exponent)?;
-    Ok(Outputs { parts: [Value::from(fields).to_string().into_bytes(), clip.clone(), header.into_bytes(), rig.clone(), poses, glb] })
+    Ok(Outputs {
+        parts: [Value::from(fields).to_string().into_bytes(), clip.clone(), header.into_bytes(), rig.clone(), poses, glb],
+    })
 }
 
 /// Returns the motion as raw values, frame by frame, little-endian: what an exact clip would play.

@@ -26,6 +26,7 @@ pub const PARTS: [Part; 5] = [
         &[
             ("A talking face for your assistant", "docs/tutorials/talking-face.md"),
             ("Boards", "docs/BOARDS.md"),
+            ("ESP32 and ESP32-S3", "docs/ESP32.md"),
             ("Updates of a board's clips", "docs/UPDATE.md"),
             ("Web pages", "docs/WEB.md"),
             ("The element for web pages", "web/packages/player/README.md"),
@@ -35,6 +36,7 @@ pub const PARTS: [Part; 5] = [
             ("C", "bindings/c/README.md"),
             ("LVGL", "bindings/lvgl/README.md"),
             ("Arduino", "bindings/arduino/README.md"),
+            ("ESP-IDF", "bindings/esp-idf/README.md"),
             ("ESPHome", "bindings/esphome/README.md"),
             ("xiaozhi-esp32", "bindings/xiaozhi/README.md"),
             ("Python", "bindings/python/README.md"),
