@@ -51,9 +51,10 @@ impl Writer {
             "bufferView": self.views.len() - 1, "componentType": FLOAT, "count": numbers.len() / components, "type": kind,
         });
         if bounded {
-            let of = |pick: fn(f32, f32) -> f32, from: f32| -> Vec<f32> {
+            // Of f64: how an f32 is written depends on features of serde_json that another crate may ask for.
+            let of = |pick: fn(f32, f32) -> f32, from: f32| -> Vec<f64> {
                 let along = |i: usize| numbers.iter().skip(i).step_by(components).fold(from, |x, &y| pick(x, y as f32));
-                (0..components).map(along).collect()
+                (0..components).map(along).map(f64::from).collect()
             };
             accessor["min"] = json!(of(f32::min, f32::MAX));
             accessor["max"] = json!(of(f32::max, f32::MIN));
