@@ -88,7 +88,7 @@ print(positions.shape, clip.joints[0].name, positions[0, 0])`,
     },
     {
       language: "MicroPython",
-      needs: `bindings/micropython/pantin.py and pantin_tables.py, and ${stem}.ptn, on the board`,
+      needs: `bindings/micropython/pantin*.py and ${stem}.ptn on the board`,
       text: `import pantin
 
 clip = pantin.Clip(open("${stem}.ptn", "rb").read())

@@ -45,7 +45,10 @@ void Face::setup() {
   pantin_face_live(&this->face_, random_uint32() | 1);
   if (this->talk_.rate == 0)
     pantin_talk_open(&this->talk_, RATE);
-  this->emote(this->initial_emote_);
+  this->is_open_ = true;
+  this->emote(this->first_emote_);
+  if (!this->first_clip_.empty())
+    this->play(this->first_clip_);
   pantin_face_transition(&this->face_, this->transition_ms_);
   if (this->display_ != nullptr)
     this->sent_.resize((this->height_ + ROWS - 1) / ROWS);
@@ -87,9 +90,16 @@ void Face::dump_config() {
 }
 
 bool Face::emote(const std::string &name) {
+  if (!this->is_open_) {
+    this->first_emote_ = name;
+    this->first_clip_.clear();
+    return !this->is_failed();
+  }
   const pantin_result result = pantin_face_emote(&this->face_, name.c_str());
   if (result == PANTIN_NOT_FOUND) {
     ESP_LOGW(TAG, "There is no emote '%s'", name.c_str());
+  } else if (result != PANTIN_OK) {
+    ESP_LOGW(TAG, "The emote '%s' does not play: result %d of pantin.h", name.c_str(), result);
   }
   return result == PANTIN_OK;
 }
@@ -108,6 +118,10 @@ uint16_t Face::channels_() const {
 }
 
 bool Face::play(const std::string &name) {
+  if (!this->is_open_) {
+    this->first_clip_ = name;
+    return !this->is_failed();
+  }
   for (const pantin_emote &own : this->clips_) {
     if (name != own.name)
       continue;

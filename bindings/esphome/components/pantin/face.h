@@ -27,7 +27,7 @@ class Face : public Component {
   Face(uint16_t width, uint16_t height, const uint8_t *model, uint32_t length)
       : model_(model), length_(length), width_(width), height_(height) {}
 
-  void set_initial_emote(const char *name) { this->initial_emote_ = name; }
+  void set_initial_emote(const char *name) { this->first_emote_ = name; }
   void set_transition(uint16_t ms) { this->transition_ms_ = ms; }
 
   /// Gives the face a clip, before setup(). Name and bytes are not copied.
@@ -109,7 +109,10 @@ class Face : public Component {
   /// Pixels of ROWS rows, and a checksum of each such band as it was sent.
   std::unique_ptr<uint16_t[]> buffer_;
   std::vector<uint32_t> sent_;
-  const char *initial_emote_{"neutral"};
+  /// What setup() shows: also what is asked for before it, as `on_boot` does.
+  std::string first_emote_{"neutral"};
+  std::string first_clip_;
+  bool is_open_{false};
   display::Display *display_{nullptr};
 #ifdef USE_LVGL
   lv_obj_t *parent_{nullptr};

@@ -290,6 +290,7 @@ fn check(printed: &str) -> Result<()> {
     in_range("clip", 0, 100, 8_000)?;
     in_range("playing", 0, 0, 0)?;
     in_range("finished", 0, 1, 1)?;
+    in_range("boot", 0, 1, 1)?;
     ensure!(numbers(printed, "refused")? == [0, 0, 0], "clips that do not play are refused");
     in_range("level", 0, 500, 8_000)?;
     in_range("closed", 0, 0, 50)?;

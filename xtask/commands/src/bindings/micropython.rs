@@ -186,7 +186,7 @@ fn figures(folder: &TempDir, interpreter: &Interpreter) -> Result<()> {
 /// What a program prints in a folder with its clip; none without MicroPython.
 pub fn program(folder: &TempDir, place: &Path, text: &str) -> Result<Option<String>> {
     let Some(interpreter) = interpreter(folder) else { return Ok(None) };
-    for name in ["pantin.py", "pantin_tables.py"] {
+    for name in ["pantin.py", "pantin_tables.py", "pantin_fast.py", "pantin_slow.py"] {
         std::fs::copy(home().join(name), place.join(name)).with_context(|| name.to_owned())?;
     }
     std::fs::write(place.join("play.py"), text)?;
