@@ -6,7 +6,7 @@ use crate::source::{Status, TextLine};
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
-use embedded_graphics::mono_font::{MonoFont, MonoTextStyleBuilder, ascii::FONT_4X6, ascii::FONT_6X10};
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::surface::{Framebuffer, Layout};
@@ -72,9 +72,11 @@ pub(crate) const fn columns<L: Layout>() -> usize {
 #[inline(always)]
 fn draw<L: Layout>([top, bottom]: [&str; 2], target: &mut Framebuffer<L>) {
     let font = const { font::<L>() };
-    let letters = L::Ink::of(BodyPart::Middle, SHADE);
+    let mut style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
     // On a small display the text is over the figure: its ground is dark.
-    let style = MonoTextStyleBuilder::new().font(font).text_color(letters).background_color(L::Ink::DARK).build();
+    if const { L::HEIGHT < LARGE_ROWS } {
+        style.background_color = Some(L::Ink::DARK);
+    }
     let last_row = L::HEIGHT as i32 - font.character_size.height as i32;
     for (line, y) in [(top, 0), (bottom, last_row)] {
         // Drawing on a framebuffer cannot fail.
