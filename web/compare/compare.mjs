@@ -25,7 +25,7 @@ const PLAYERS = {
   Pantin: {
     "": () => page(
       '<link rel="modulepreload" href="pantin-player.js"><link rel="preload" as="fetch" crossorigin href="walk.ptn"><script type="module" src="pantin-player.js"></script>',
-      '<pantin-player src="walk.ptn" autoplay loop></pantin-player><script>(function look() { document.querySelector("pantin-player").playable ? (window.first = performance.now()) : requestAnimationFrame(look) })()</script>',
+      '<pantin-player src="walk.ptn" autoplay loop style="width: 480px"></pantin-player><script>(function look() { document.querySelector("pantin-player").playable ? (window.first = performance.now()) : requestAnimationFrame(look) })()</script>',
     ),
     "pantin-player.js": read(join(SITE, "pantin-player.js")), "pantin-controls.js": read(join(SITE, "pantin-controls.js")), "walk.ptn": read(join(SITE, "clips/walk.ptn")),
   },
@@ -47,9 +47,11 @@ let files = {};
 const server = createServer(({ url }, response) => {
   const name = url.slice(1);
   if (!(name in files)) return response.writeHead(404).end();
-  const body = brotliCompressSync(files[name]());
+  // Clips are compressed already.
+  const coding = extname(name) === ".ptn" ? {} : { "Content-Encoding": "br" };
+  const body = coding["Content-Encoding"] ? brotliCompressSync(files[name]()) : files[name]();
   sent.set(name, body.length);
-  response.writeHead(200, { "Content-Type": KINDS[extname(name)] ?? "application/octet-stream", "Content-Encoding": "br", "Content-Length": body.length }).end(body);
+  response.writeHead(200, { "Content-Type": KINDS[extname(name)] ?? "application/octet-stream", "Content-Length": body.length, ...coding }).end(body);
 });
 await new Promise((done) => server.listen(0, "127.0.0.1", done));
 const address = `http://127.0.0.1:${server.address().port}/`;
