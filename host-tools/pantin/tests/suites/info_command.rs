@@ -89,7 +89,8 @@ fn channels_that_follow_others_are_reported_and_a_clip_without_joints_has_no_fig
 
 #[test]
 fn boards_that_a_clip_fits_are_listed() {
-    let all = serde_json::json!(["blackpill", "esp32-c3", "microbit", "microbit-v2", "nrf52840-dk", "nucleo-f411re", "pico"]);
+    let names = ["blackpill", "esp32-c3", "microbit", "microbit-v2", "nrf52840-dk", "nucleo-f411re", "pico", "xiao-nrf52840"];
+    let all = serde_json::json!(names);
     let walk = info_json("motions/walk.ptn");
     assert!(walk["boards"] == all && walk["boards_by_update"] == all, "{walk}");
     let large = info_json("tests/vectors/channels-300.ptn");
