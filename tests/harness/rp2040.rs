@@ -245,7 +245,7 @@ impl Request {
         self.usb()
     }
 
-    /// Keeps one of so many pictures: the last of each.
+    /// Keeps one picture of each `count`, the last one.
     pub fn every(mut self, count: usize) -> Request {
         self.every = count;
         self

@@ -40,7 +40,7 @@ pub fn of_rp2350_elf(elf: &[u8]) -> Result<Vec<u8>> {
     Ok(uf2::file(RP2350, &pages))
 }
 
-/// The same for the nRF52840 with a boot loader.
+/// Makes the UF2 file of an nRF52840 with a boot loader.
 pub fn of_nrf52840_elf(elf: &[u8]) -> Result<Vec<u8>> {
     let pages = pages(elf, &NRF52840_PROGRAM)?;
     ensure!(

@@ -499,9 +499,8 @@ fn display_and_usb_cable_are_unplugged_and_plugged_in() {
     }
 }
 
-/// `cargo test -p harness --test suites -- --ignored --nocapture a_thousand_times`
 #[test]
-#[ignore = "37 seconds of the chip take minutes in the emulator"]
+#[ignore = "37 seconds of the chip take minutes in the emulator: `cargo test -p harness --test suites -- --ignored --nocapture a_thousand_times`"]
 fn display_and_usb_cable_are_unplugged_a_thousand_times() {
     if !setup::host_only("unplugging the Pico a thousand times") {
         survives_unplugging(1000);
@@ -587,9 +586,8 @@ fn a_pico_that_is_alone_plays_clip_after_clip_and_a_press_plays_the_next() {
     assert_eq!(dark.len(), 1, "it stays lit");
 }
 
-/// `cargo test -p harness --test suites -- --ignored --nocapture ten_minutes`
 #[test]
-#[ignore = "ten minutes of the chip take more than a minute of a processor in the emulator"]
+#[ignore = "ten minutes of the chip take minutes in the emulator: `cargo test -p harness --test suites -- --ignored --nocapture ten_minutes`"]
 fn after_ten_minutes_alone_a_pico_is_dark_until_a_press() {
     if setup::host_only("ten minutes of a Pico that is alone") {
         return;

@@ -33,7 +33,7 @@ const SET_UP: [u8; 26] = [
     0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
     0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
 ];
-/// The same for 32 rows, which are wired to the controller one after the other.
+/// Display off, then the set-up of a panel of 32 rows, which are wired to the controller one after the other.
 const SET_UP_128X32: [u8; 26] = [
     COMMANDS, 0xae, // display off
     0xd5, 0x80, 0xa8, 31, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
@@ -43,7 +43,7 @@ const SET_UP_128X32: [u8; 26] = [
     0x81, 0x8f, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
     0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
 ];
-/// The same for 40 rows of a module without a resistor for the current, which the controller's own one (0xad) replaces.
+/// Display off, then the set-up of a panel of 40 rows. Its module has no resistor that sets the current: command 0xad chooses the controller's own reference.
 const SET_UP_72X40: [u8; 28] = [
     COMMANDS, 0xae, // display off
     0xd5, 0x80, 0xa8, 39, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
@@ -56,7 +56,7 @@ const SET_UP_72X40: [u8; 28] = [
 ];
 /// The glass of 72 columns shows those in the middle.
 const FIRST_COLUMN_72X40: u8 = 28;
-/// The same as [`SET_UP`] for an SH1106, which has another charge pump, and no modes of addressing.
+/// Display off, then the set-up of a panel of 64 rows with an SH1106. Its charge pump has another command than the SSD1306's, and it has no modes of addressing.
 const SET_UP_SH1106: [u8; 23] = [
     COMMANDS, 0xae, // display off
     0xd5, 0x80, 0xa8, 63, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line

@@ -51,7 +51,7 @@ const WRONG: [(&str, &str, &str, &str); 14] = [
     ("a size of 0", "  width: 64\n  height: 64\n", "  width: 0\n  height: 64\n", "value must be at least 1"),
     ("a size above 2047", "  width: 64\n  height: 64\n", "  width: 64\n  height: 2048\n", "value must be at most 2047"),
     ("a clip that is not there", "id: face", "id: face\n  clips:\n    hello: none.ptn", "Could not find file"),
-    ("a clip that is none", "id: face", "id: face\n  clips:\n    hello: wrong.yaml", "wrong.yaml is not a clip"),
+    ("a file that is no clip", "id: face", "id: face\n  clips:\n    hello: wrong.yaml", "wrong.yaml is not a clip"),
     ("a key clip", "id: face", "id: face\n  clips:\n    hello: keys.ptn", "convert its motion with --segments"),
     (
         "a clip that the face has not",
